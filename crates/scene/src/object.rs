@@ -1,0 +1,212 @@
+//! Primitives as records in flat tables: one small struct an object, its words and numbers in shared arrays, so that a
+//! million polygons cost little more than their coordinates.
+
+use crate::Kind;
+use ambit_base::Location;
+
+/// Number of a primitive in reading order, over all files of a scene and everything it instances.
+pub type ObjectId = u32;
+
+/// The modifier `void`.
+pub const VOID: ObjectId = ObjectId::MAX;
+
+/// One primitive.
+#[derive(Clone, Copy, Debug)]
+pub struct Object {
+    /// Its type.
+    pub kind: Kind,
+    /// The primitive that modifies it, or [`VOID`].
+    pub modifier: ObjectId,
+    pub(crate) name: Span,
+    pub(crate) strings: Span,
+    pub(crate) reals: Span,
+    /// Index into the scene's table of files.
+    pub(crate) file: u32,
+    /// Line on which it begins, from 1.
+    pub(crate) line: u32,
+}
+
+/// A run of entries in one of the scene's arrays.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Span {
+    pub(crate) start: u32,
+    pub(crate) len: u32,
+}
+
+impl Span {
+    fn range(self) -> std::ops::Range<usize> {
+        self.start as usize..self.start as usize + self.len as usize
+    }
+}
+
+/// All primitives of a scene, in reading order.
+#[derive(Debug, Default)]
+pub struct Scene {
+    objects: Vec<Object>,
+    /// Bytes of every name and string argument.
+    text: Vec<u8>,
+    /// One span of `text` for each string argument.
+    strings: Vec<Span>,
+    reals: Vec<f64>,
+    files: Vec<String>,
+}
+
+/// What [`Scene::push`] takes: a primitive with its parts in the caller's hands.
+#[derive(Clone, Copy, Debug)]
+pub struct NewObject<'a> {
+    /// Its type.
+    pub kind: Kind,
+    /// Its modifier, or [`VOID`].
+    pub modifier: ObjectId,
+    /// Its identifier, any bytes.
+    pub name: &'a [u8],
+    /// String arguments.
+    pub strings: &'a [&'a [u8]],
+    /// Real arguments.
+    pub reals: &'a [f64],
+    /// Index from [`Scene::add_file`].
+    pub file: u32,
+    /// Line on which it begins, from 1; 0 if unknown.
+    pub line: u32,
+}
+
+impl Scene {
+    /// An empty scene.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Names a file (or command) that objects come from; gives its index.
+    pub fn add_file(&mut self, name: &str) -> u32 {
+        self.files.push(name.to_owned());
+        self.files.len() as u32 - 1
+    }
+
+    /// Appends a primitive and gives its number.
+    pub fn push(&mut self, new: NewObject<'_>) -> ObjectId {
+        let name = self.add_text(new.name);
+        let strings = Span { start: self.strings.len() as u32, len: new.strings.len() as u32 };
+        for s in new.strings {
+            let span = self.add_text(s);
+            self.strings.push(span);
+        }
+        let reals = Span { start: self.reals.len() as u32, len: new.reals.len() as u32 };
+        self.reals.extend_from_slice(new.reals);
+        let id = self.objects.len() as ObjectId;
+        self.objects.push(Object {
+            kind: new.kind,
+            modifier: new.modifier,
+            name,
+            strings,
+            reals,
+            file: new.file,
+            line: new.line,
+        });
+        id
+    }
+
+    fn add_text(&mut self, bytes: &[u8]) -> Span {
+        let start = self.text.len() as u32;
+        self.text.extend_from_slice(bytes);
+        Span { start, len: bytes.len() as u32 }
+    }
+
+    /// Number of primitives of every kind.
+    pub fn len(&self) -> usize {
+        self.objects.len()
+    }
+
+    /// True if there is no primitive.
+    pub fn is_empty(&self) -> bool {
+        self.objects.is_empty()
+    }
+
+    /// The primitive of that number.
+    #[inline]
+    pub fn object(&self, id: ObjectId) -> &Object {
+        &self.objects[id as usize]
+    }
+
+    /// For corrections of type or modifier after reading.
+    pub fn object_mut(&mut self, id: ObjectId) -> &mut Object {
+        &mut self.objects[id as usize]
+    }
+
+    /// Numbers of all primitives, in order.
+    pub fn ids(&self) -> std::ops::Range<ObjectId> {
+        0..self.objects.len() as ObjectId
+    }
+
+    /// Identifier, as bytes.
+    pub fn name_bytes(&self, id: ObjectId) -> &[u8] {
+        &self.text[self.object(id).name.range()]
+    }
+
+    /// Identifier, with bytes that are not UTF-8 replaced.
+    pub fn name(&self, id: ObjectId) -> std::borrow::Cow<'_, str> {
+        String::from_utf8_lossy(self.name_bytes(id))
+    }
+
+    /// Number of string arguments.
+    pub fn string_count(&self, id: ObjectId) -> usize {
+        self.object(id).strings.len as usize
+    }
+
+    /// String argument `i` (from 0), as bytes.
+    pub fn string_bytes(&self, id: ObjectId, i: usize) -> Option<&[u8]> {
+        let span = self.strings[self.object(id).strings.range()].get(i)?;
+        Some(&self.text[span.range()])
+    }
+
+    /// String argument `i` (from 0), with bytes that are not UTF-8 replaced.
+    pub fn string(&self, id: ObjectId, i: usize) -> Option<std::borrow::Cow<'_, str>> {
+        self.string_bytes(id, i).map(String::from_utf8_lossy)
+    }
+
+    /// All string arguments.
+    pub fn strings(&self, id: ObjectId) -> impl ExactSizeIterator<Item = std::borrow::Cow<'_, str>> {
+        self.strings[self.object(id).strings.range()].iter().map(|s| String::from_utf8_lossy(&self.text[s.range()]))
+    }
+
+    /// Real arguments.
+    #[inline]
+    pub fn reals(&self, id: ObjectId) -> &[f64] {
+        &self.reals[self.object(id).reals.range()]
+    }
+
+    /// Replaces the real arguments of an object by no more numbers than it has.
+    ///
+    /// # Panics
+    /// If `new` is longer than the present list.
+    pub fn shrink_reals(&mut self, id: ObjectId, new: &[f64]) {
+        let span = self.object(id).reals;
+        assert!(new.len() <= span.len as usize, "an object's numbers only shrink");
+        self.reals[span.start as usize..][..new.len()].copy_from_slice(new);
+        self.object_mut(id).reals.len = new.len() as u32;
+    }
+
+    /// Where a primitive was defined.
+    pub fn location(&self, id: ObjectId) -> Location {
+        let o = self.object(id);
+        let file = self.files.get(o.file as usize).cloned().unwrap_or_default();
+        Location { file, line: o.line, column: 0 }
+    }
+
+    /// `TYPE "identifier"`, as diagnostics name a primitive.
+    pub fn describe(&self, id: ObjectId) -> String {
+        format!("{} \"{}\"", self.object(id).kind.name(), self.name(id))
+    }
+
+    /// The latest *modifier* called `name` that was defined before object `before`.
+    pub fn modifier_before(&self, name: &[u8], before: ObjectId) -> Option<ObjectId> {
+        (0..before).rev().find(|&id| self.object(id).kind.is_modifier() && self.name_bytes(id) == name)
+    }
+
+    /// Gives back memory that was reserved for growth.
+    pub fn shrink_to_fit(&mut self) {
+        self.objects.shrink_to_fit();
+        self.text.shrink_to_fit();
+        self.strings.shrink_to_fit();
+        self.reals.shrink_to_fit();
+    }
+}
