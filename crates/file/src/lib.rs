@@ -1,1 +1,28 @@
-//! See the crate description.
+//! Radiance file formats as bytes, with no knowledge of rendering: portable numbers, information headers, resolution
+//! strings, pixel codes, pictures, views, direction codes, words, the search path, record locks and export to formats
+//! that other programs read.
+//!
+//! Nothing here reads arguments, the environment or the clock; the tool passes such values in. Lengths are scene
+//! units, angles of views are degrees as users write them, radiance is W/(sr·m²) per channel.
+
+mod command;
+mod cursor;
+mod direction;
+mod error;
+mod header;
+mod portable;
+mod printf;
+mod resolution;
+mod rgbe;
+mod stamp;
+
+pub use command::{base_name, command_line};
+pub use cursor::Cursor;
+pub use direction::{decode_direction, encode_direction};
+pub use error::Error;
+pub use header::{Header, alignment, format_line, format_padding};
+pub use portable::{FLOAT_BYTES, PortableRead, PortableWrite, decode_float, encode_float};
+pub use printf::{exponent, fixed, general};
+pub use resolution::{Axis, Orientation, Resolution};
+pub use rgbe::{decode_pixel, decode_spectrum, encode_pixel, encode_spectrum};
+pub use stamp::{Zone, capture_lines};

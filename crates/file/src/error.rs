@@ -1,0 +1,62 @@
+//! What may go wrong with a file, with its name and what was expected.
+
+use std::io;
+
+/// A file that could not be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The operating system refused; `action` reads like `cannot open view file`.
+    #[error("{action} \"{file}\": {source}")]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// The file as the user named it.
+        file: String,
+        /// Why it failed.
+        source: io::Error,
+    },
+    /// The information header is missing or has no end.
+    #[error("{file}: bad header: {expected}")]
+    Header {
+        /// The file as the user named it.
+        file: String,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// The header's `FORMAT=` is not one that can be read here.
+    #[error("{file}: FORMAT={found} (expected {expected})")]
+    Format {
+        /// The file as the user named it.
+        file: String,
+        /// The value that stands there.
+        found: String,
+        /// The values that would do.
+        expected: &'static str,
+    },
+    /// The resolution string is missing or malformed.
+    #[error("{file}: bad resolution string '{found}' (expected something like '-Y 512 +X 512')")]
+    Resolution {
+        /// The file as the user named it.
+        file: String,
+        /// What stands in its place.
+        found: String,
+    },
+    /// A scanline that can not be decoded.
+    #[error("{file}: scanline {scanline}: {problem}")]
+    Scanline {
+        /// The file as the user named it.
+        file: String,
+        /// Number of the scanline in the file, from 0.
+        scanline: u32,
+        /// What was expected there.
+        problem: &'static str,
+    },
+}
+
+impl Error {
+    /// Wraps an error of the operating system.
+    pub fn io(action: &'static str, file: &str, source: io::Error) -> Self {
+        Self::Io { action, file: file.to_owned(), source }
+    }
+}
