@@ -76,7 +76,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_decoded_direction_keeps_its_code(x in -1f64..1.0, y in -1f64..1.0, z in -1f64..1.0) {
+        fn a_decoded_direction_keeps_its_code_unless_components_tie(x in -1f64..1.0, y in -1f64..1.0, z in -1f64..1.0) {
             let v = DVec3::new(x, y, z);
             prop_assume!(v.length() > 1e-3);
             let d = v.normalize();
@@ -84,7 +84,12 @@ mod tests {
             let back = decode_direction(code);
             prop_assert!(back.distance(d) < 1.1e-4);
             prop_assert!((back.length() - 1.0).abs() < 1e-12);
-            prop_assert!(encode_direction(back) == code, "{:x} {:x}", code, encode_direction(back));
+            // If two components nearly tie for the largest, rounding may have the other one left out next time.
+            let mut sizes = d.abs().to_array();
+            sizes.sort_by(f64::total_cmp);
+            let again = encode_direction(back);
+            prop_assert!(again == code || sizes[2] - sizes[1] < 2.0 / SCALE, "{:x} {:x}", code, again);
+            prop_assert!(decode_direction(again).distance(back) < 1.1e-4);
         }
 
         #[test]
