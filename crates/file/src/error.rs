@@ -7,12 +7,20 @@ use std::io;
 #[non_exhaustive]
 pub enum Error {
     /// The operating system refused; `action` reads like `cannot open view file`.
-    #[error("{action} \"{file}\": {source}")]
+    #[error("{action} \"{file}\": {}", os_text(source))]
     Io {
         /// What was tried.
         action: &'static str,
         /// The file as the user named it.
         file: String,
+        /// Why it failed.
+        source: io::Error,
+    },
+    /// The file of an argument `@file` (or a variable `$VAR`) is not there.
+    #[error("cannot expand '{word}': {}", os_text(source))]
+    Expand {
+        /// The argument, with its first character.
+        word: String,
         /// Why it failed.
         source: io::Error,
     },
@@ -42,6 +50,12 @@ pub enum Error {
         /// What stands in its place.
         found: String,
     },
+    /// A view file without any view option.
+    #[error("bad view file \"{file}\"")]
+    NoView {
+        /// The file as the user named it.
+        file: String,
+    },
     /// A scanline that can not be decoded.
     #[error("{file}: scanline {scanline}: {problem}")]
     Scanline {
@@ -58,5 +72,14 @@ impl Error {
     /// Wraps an error of the operating system.
     pub fn io(action: &'static str, file: &str, source: io::Error) -> Self {
         Self::Io { action, file: file.to_owned(), source }
+    }
+}
+
+/// What the system says about an error, without the number that the standard library appends.
+pub fn os_text(error: &io::Error) -> String {
+    let text = error.to_string();
+    match (error.raw_os_error(), text.rfind(" (os error ")) {
+        (Some(_), Some(at)) => text[..at].to_owned(),
+        _ => text,
     }
 }

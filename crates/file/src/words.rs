@@ -1,0 +1,72 @@
+//! Words of command lines: what numbers look like, and the words that `@file` and `$VAR` stand for.
+
+use crate::error::Error;
+use std::fs::File;
+use std::io::{self, Read};
+
+/// The most words that one file or variable stands for; the rest is dropped without a word.
+pub const WORD_LIMIT: usize = 4095;
+
+/// Longest argument file read, in bytes: more than the words that count can fill in practice.
+const FILE_LIMIT: u64 = 1 << 26;
+
+/// A real number as options write it: `[+-]digits[.digits][e[+-]digits]` with at least one digit before the exponent.
+/// `nan`, `inf`, `0x2`, and numbers too large for a double are none.
+pub fn real(word: &str) -> Option<f64> {
+    let plain = word.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.' | b'e' | b'E'));
+    if plain { word.parse().ok().filter(|v: &f64| v.is_finite()) } else { None }
+}
+
+/// An integer as options write it: `[+-]digits`, within 32 bits as the programs hold it.
+pub fn integer(word: &str) -> Option<i32> {
+    word.parse().ok()
+}
+
+/// The words of a variable's value or of a file's text: white space separates, nothing quotes, nothing comments.
+pub fn split_words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    text.split(|b| b.is_ascii_whitespace() || *b == 0x0b).filter(|w| !w.is_empty()).take(WORD_LIMIT)
+}
+
+/// The words of a file named by an argument `@file`; they are not expanded further here.
+pub fn read_words(file: &str) -> Result<Vec<Vec<u8>>, Error> {
+    let failed = |e: io::Error| Error::Expand { word: format!("@{file}"), source: e };
+    let mut text = Vec::new();
+    File::open(file).map_err(failed)?.take(FILE_LIMIT).read_to_end(&mut text).map_err(failed)?;
+    Ok(split_words(&text).map(<[u8]>::to_vec).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_those_of_option_values() {
+        for word in ["1", "+1", "-.5", "1.", "1e-2", "1.5E+3", "007"] {
+            assert!(real(word).is_some(), "{word}");
+        }
+        for word in ["", ".", "1e", "0x2", "inf", "nan", "1d0", "1 ", "--1", "1e999", "e5"] {
+            assert!(real(word).is_none(), "{word}");
+        }
+        assert_eq!(integer("+7"), Some(7));
+        for word in ["1.5", "1e1", "", "99999999999", "-", "0x1"] {
+            assert!(integer(word).is_none(), "{word}");
+        }
+    }
+
+    #[test]
+    fn words_are_split_at_white_space_only() {
+        let words: Vec<&[u8]> = split_words(b" -ab 2\n#x \"a b\"\t\r\n").collect();
+        assert_eq!(words, [&b"-ab"[..], b"2", b"#x", b"\"a", b"b\""]);
+        assert_eq!(split_words(&b"x ".repeat(5000)).count(), WORD_LIMIT);
+    }
+
+    #[test]
+    fn files_are_read_and_named_when_missing() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("opts");
+        std::fs::write(&path, "-x 4\n-y 4").unwrap();
+        assert_eq!(read_words(path.to_str().unwrap()).unwrap().len(), 4);
+        let e = read_words("/no/such/file").unwrap_err().to_string();
+        assert_eq!(e, "cannot expand '@/no/such/file': No such file or directory");
+    }
+}
