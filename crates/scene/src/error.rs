@@ -216,3 +216,12 @@ impl Error {
         }
     }
 }
+
+/// The system's words for an I/O error, without the error number that Rust appends.
+pub(crate) fn reason(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    match text.find(" (os error") {
+        Some(end) => text[..end].to_owned(),
+        None => text,
+    }
+}

@@ -1,12 +1,18 @@
 //! Radiance scene text to typed records: the lexer, the reader (primitives, commands, aliases), the table of types and
 //! the surfaces' geometry.
 
+mod command;
 mod error;
 mod kind;
+mod lexer;
+mod names;
 mod object;
+mod reader;
 mod surface;
 
+pub use command::{CommandOutput, NoCommands, Runner, Shell};
 pub use error::{AuxiliaryProblem, Error, ErrorClass, ErrorKind, Problem};
 pub use kind::{Class, KINDS, Kind};
 pub use object::{NewObject, Object, ObjectId, Scene, VOID};
+pub use reader::Reader;
 pub use surface::{Bounds, Complaint, Cone, Facet, Polygon, Ring, Shape, Source, Sphere, Warning};

@@ -2,6 +2,7 @@
 //! million polygons cost little more than their coordinates.
 
 use crate::Kind;
+use crate::names::Names;
 use ambit_base::Location;
 
 /// Number of a primitive in reading order, over all files of a scene and everything it instances.
@@ -49,6 +50,8 @@ pub struct Scene {
     strings: Vec<Span>,
     reals: Vec<f64>,
     files: Vec<String>,
+    /// Modifiers by name.
+    names: Names,
 }
 
 /// What [`Scene::push`] takes: a primitive with its parts in the caller's hands.
@@ -82,8 +85,28 @@ impl Scene {
         self.files.len() as u32 - 1
     }
 
-    /// Appends a primitive and gives its number.
+    /// Which of the scene's tables has no room for a primitive; `None` if all have.
+    pub fn full(&self, new: &NewObject<'_>) -> Option<&'static str> {
+        let limit = u32::MAX as usize;
+        let text = new.name.len() + new.strings.iter().map(|s| s.len()).sum::<usize>();
+        if self.objects.len() + 1 >= limit {
+            Some("too many objects")
+        } else if self.text.len() + text >= limit || self.strings.len() + new.strings.len() >= limit {
+            Some("too much text")
+        } else if self.reals.len() + new.reals.len() >= limit {
+            Some("too many numbers")
+        } else {
+            None
+        }
+    }
+
+    /// Appends a primitive and gives its number. Modifiers can be found by name from then on; but one that repeats the
+    /// present definition of its name ([`Scene::modifier`]) leaves that one in its place.
+    ///
+    /// # Panics
+    /// If one of the tables is full; see [`Scene::full`].
     pub fn push(&mut self, new: NewObject<'_>) -> ObjectId {
+        assert_eq!(self.full(&new), None, "the caller asks for room first");
         let name = self.add_text(new.name);
         let strings = Span { start: self.strings.len() as u32, len: new.strings.len() as u32 };
         for s in new.strings {
@@ -102,6 +125,12 @@ impl Scene {
             file: new.file,
             line: new.line,
         });
+        if new.kind.is_modifier() {
+            let present = self.names.latest(new.name);
+            if !present.is_some_and(|old| self.is_repeated(id, old)) {
+                self.names.insert(new.name, id);
+            }
+        }
         id
     }
 
@@ -168,6 +197,11 @@ impl Scene {
         self.strings[self.object(id).strings.range()].iter().map(|s| String::from_utf8_lossy(&self.text[s.range()]))
     }
 
+    /// All string arguments, as bytes.
+    pub fn strings_bytes(&self, id: ObjectId) -> impl ExactSizeIterator<Item = &[u8]> {
+        self.strings[self.object(id).strings.range()].iter().map(|s| &self.text[s.range()])
+    }
+
     /// Real arguments.
     #[inline]
     pub fn reals(&self, id: ObjectId) -> &[f64] {
@@ -197,9 +231,15 @@ impl Scene {
         format!("{} \"{}\"", self.object(id).kind.name(), self.name(id))
     }
 
-    /// The latest *modifier* called `name` that was defined before object `before`.
+    /// What a modifier called `name` denotes now: its latest definition, or an older one that the latest only repeats.
+    pub fn modifier(&self, name: &[u8]) -> Option<ObjectId> {
+        self.names.latest(name)
+    }
+
+    /// What a modifier called `name` denoted when object `before` was defined. This is how names among string arguments
+    /// are resolved.
     pub fn modifier_before(&self, name: &[u8], before: ObjectId) -> Option<ObjectId> {
-        (0..before).rev().find(|&id| self.object(id).kind.is_modifier() && self.name_bytes(id) == name)
+        self.names.before(name, before)
     }
 
     /// Gives back memory that was reserved for growth.

@@ -15,12 +15,13 @@ fn texts(warnings: &[Warning]) -> Vec<&str> {
     warnings.iter().map(|w| w.text.as_str()).collect()
 }
 
-/// Kind, arguments, warnings, kind and arguments afterwards; the second element of the axis is 0 0 0 → 0 0 1.
+/// Kind, arguments, warnings, kind and arguments afterwards.
+type Case<'a> = (Kind, Vec<f64>, &'a [&'a str], Kind, Vec<f64>);
+
 #[test]
 fn round_surfaces_are_put_right() {
     let axis = |rest: &[f64]| [&[0.0, 0.0, 0.0, 0.0, 0.0, 1.0], rest].concat();
     let flat = |rest: &[f64]| [&[0.0; 6], rest].concat();
-    type Case<'a> = (Kind, Vec<f64>, &'a [&'a str], Kind, Vec<f64>);
     let cases: &[Case<'_>] = &[
         (Kind::Cone, axis(&[-1.0, -0.5]), &["negative radii for cone \"p\""], Kind::Cup, axis(&[1.0, 0.5])),
         (
