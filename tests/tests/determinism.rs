@@ -1,0 +1,83 @@
+//! The same bits from the same command, whatever the number of threads (`-n 1`, `-n 2`, `-n 8`): pictures, sensors
+//! and ambient files.
+
+use std::path::Path;
+
+use ambit_tests::programs::foreign;
+use ambit_tests::{Fixture, Program};
+
+const LIGHT: &str = "-ab 2 -ad 128 -as 32 -aa .2 -ar 32 -ds .2 -dj .5 -ss 1";
+
+/// What follows the header: its lines hold the command and the time of day.
+fn body(bytes: &[u8]) -> Vec<u8> {
+    let end = bytes.windows(2).position(|w| w == b"\n\n").expect("a header ends with an empty line");
+    bytes[end + 2..].to_vec()
+}
+
+/// Runs `command` with each number of threads and an ambient file of its own; returns outputs and ambient files.
+fn with_threads(scratch: &Path, run: impl Fn(Program) -> Vec<u8>, name: &'static str) -> Vec<(Vec<u8>, Vec<u8>)> {
+    let one = |threads: u32| {
+        let cache = scratch.join(format!("{name}{threads}.amb"));
+        let program = Program::new(name).line(LIGHT).line(&format!("-n {threads}")).arg("-af").arg(&cache);
+        let out = run(program);
+        (out, body(&std::fs::read(&cache).expect("an ambient file was asked for")))
+    };
+    [1, 2, 8].map(one).to_vec()
+}
+
+fn all_equal(what: &str, answers: &[(Vec<u8>, Vec<u8>)]) {
+    let (out, cache) = &answers[0];
+    assert!(!out.is_empty() && cache.len() > 67, "{what}: nothing came out");
+    for (threads, (other, file)) in [2, 8].iter().zip(&answers[1..]) {
+        let first = out.iter().zip(other).position(|(a, b)| a != b);
+        assert!(out == other, "{what}: -n {threads} differs from -n 1, first at byte {first:?} of {}", out.len());
+        assert!(cache == file, "{what}: the ambient file of -n {threads} differs from that of -n 1");
+    }
+}
+
+#[test]
+fn pictures_do_not_depend_on_the_number_of_threads() {
+    if foreign() {
+        return; // rpict -n is ours.
+    }
+    let scratch = tempfile::tempdir().expect("a scratch folder can be made");
+    for name in ["room", "optics"] {
+        let fixture = Fixture::named(name);
+        let octree = fixture.compile(scratch.path());
+        let picture = |program: Program| {
+            let view = program.arg("-vf").arg(&fixture.views[0]).line("-x 96 -y 96 -ps 2 -pt .05 -pj .7");
+            let answer = view.within(&fixture.folder).arg(&octree).run().well(name);
+            body(&answer.out)
+        };
+        all_equal(name, &with_threads(scratch.path(), picture, "rpict"));
+        for old in [1, 2, 8] {
+            std::fs::remove_file(scratch.path().join(format!("rpict{old}.amb"))).expect("it was just read");
+        }
+    }
+}
+
+#[test]
+fn sensors_do_not_depend_on_the_number_of_threads() {
+    if foreign() {
+        return; // Radiance promises it for one process only.
+    }
+    let scratch = tempfile::tempdir().expect("a scratch folder can be made");
+    let fixture = Fixture::named("room");
+    let octree = fixture.compile(scratch.path());
+    let rays = std::fs::read(&fixture.sensors).expect("sensors are checked in");
+    let sensors =
+        |program: Program| program.line("-h -I").within(&fixture.folder).arg(&octree).feed(&rays).well("rtrace").out;
+    all_equal("sensors", &with_threads(scratch.path(), sensors, "rtrace"));
+}
+
+#[test]
+fn the_same_command_twice_gives_the_same_bits() {
+    let scratch = tempfile::tempdir().expect("a scratch folder can be made");
+    let fixture = Fixture::named("lights");
+    let octree = fixture.compile(scratch.path());
+    let run = || {
+        let view = Program::new("rpict").line(LIGHT).line("-x 64 -y 64 -vf").arg(&fixture.views[0]);
+        body(&view.arg(&octree).run().well("rpict").out)
+    };
+    assert!(run() == run(), "two runs of one command differ");
+}
