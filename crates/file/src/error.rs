@@ -57,14 +57,14 @@ pub enum Error {
         file: String,
     },
     /// A scanline that can not be decoded.
-    #[error("{file}: scanline {scanline}: {problem}")]
+    #[error("{file}: scanline {scanline}: found {problem}")]
     Scanline {
         /// The file as the user named it.
         file: String,
         /// Number of the scanline in the file, from 0.
         scanline: u32,
-        /// What was expected there.
-        problem: &'static str,
+        /// What was found instead of pixels.
+        problem: String,
     },
 }
 
