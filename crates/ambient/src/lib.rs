@@ -1,1 +1,45 @@
-//! See the crate description.
+//! The irradiance cache: diffuse indirect light computed where it is first asked for, kept as records with derivatives
+//! and an ellipse of validity, and interpolated from then on (Ward, Rubinstein, Clear 1988; Ward & Heckbert 1992;
+//! Schwarzhaupt, Jensen, Jarosz 2012); and the ambient file that shares records between runs and programs.
+//!
+//! It knows neither scenes nor materials. Its user gives it hemisphere samples through [`Sampler`], asks with
+//! [`Cache::ask`], collects what misses and has it computed with [`Cache::resolve`], in parallel and with bits that do
+//! not depend on the number of threads:
+//!
+//! ```text
+//! Query ─► Cache::ask ─► Value | Fallback | Uncached (plan a Hemisphere and sample it yourself)
+//!                   └──► Miss ─► Cache::resolve ─► rounds of hemispheres ─► records ─► one value a miss
+//! ```
+//!
+//! Records, radii, weights and limits are those of Radiance 6.0a, whose ambient files are read and written. Where it is
+//! known to be wrong without need, this crate differs: gradients of uniform surroundings are zero (the sample mesh is
+//! continued to the horizon), the axes of mixed curvatures are right, the rotational gradient has finite variance,
+//! corralled records answer at their own place, black hemispheres have radii from the distances around them, and
+//! thresholds scale with the scene.
+
+mod average;
+mod cache;
+mod corral;
+mod fill;
+mod finish;
+mod gather;
+mod hemisphere;
+mod lookup;
+mod mesh;
+mod parallel;
+mod params;
+mod radii;
+mod record;
+mod sampler;
+mod select;
+mod separation;
+mod store;
+mod supersample;
+mod tilt;
+
+pub use cache::{Cache, Statistics};
+pub use hemisphere::Hemisphere;
+pub use params::{ASSUMED_REFLECTANCE, Limits, Params};
+pub use record::Record;
+pub use sampler::{Answer, Miss, Query, Sample, Sampler};
+pub use tilt::Tilt;

@@ -1,0 +1,124 @@
+//! The cache: options, records, and questions to them.
+
+use crate::average::Average;
+use crate::params::{Limits, Params};
+use crate::record::Record;
+use crate::sampler::{Answer, Query, Sampler};
+use crate::store::Store;
+use ambit_base::{DVec3, Rgb};
+
+/// What filling the cache took.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Hemisphere samples by the level of the hemisphere; entry 0 is the eye's.
+    pub samples: Vec<u64>,
+    /// Rounds of filling.
+    pub rounds: u64,
+    /// Hemispheres whose value could be used but once, because samples were refused.
+    pub unstored: u64,
+    /// Samples with a negative or undefined radiance or distance, taken as black.
+    pub repaired: u64,
+}
+
+/// The irradiance cache. Shared by `&` while light is computed, changed only by [`Cache::load`] and [`Cache::resolve`].
+#[derive(Clone, Debug)]
+pub struct Cache {
+    pub(crate) params: Params,
+    pub(crate) limits: Limits,
+    pub(crate) store: Store,
+    pub(crate) average: Average,
+    pub(crate) quantised: bool,
+    pub(crate) statistics: Statistics,
+    records: Vec<Record>,
+}
+
+impl Cache {
+    /// An empty cache for a scene whose cube has the given low corner and edge.
+    pub fn new(params: Params, cube_origin: DVec3, cube_edge: f64) -> Self {
+        Self {
+            limits: Limits::new(&params, cube_edge),
+            store: Store::new(cube_origin, cube_edge),
+            params,
+            average: Average::default(),
+            quantised: false,
+            statistics: Statistics::default(),
+            records: Vec::new(),
+        }
+    }
+
+    /// The options.
+    pub fn params(&self) -> &Params {
+        &self.params
+    }
+
+    /// Radii and angles that follow from them.
+    pub fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// All records in the order they came, loaded ones included. New ones are appended: remember a length to find them.
+    pub fn records(&self) -> &[Record] {
+        &self.records
+    }
+
+    /// What filling has taken so far.
+    pub fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+
+    /// Stores new records as an ambient file would return them, so that those who compute and those who read agree.
+    pub fn quantise(&mut self, on: bool) {
+        self.quantised = on;
+    }
+
+    /// Takes in records from a file. Implausible ones and duplicates are dropped; returns how many.
+    pub fn load(&mut self, records: impl IntoIterator<Item = Record>) -> usize {
+        let mut dropped = 0;
+        for record in records {
+            dropped += usize::from(!self.insert(record));
+        }
+        dropped
+    }
+
+    /// Stores a record; false if it is implausible or there already.
+    pub(crate) fn insert(&mut self, mut record: Record) -> bool {
+        if !record.is_plausible() {
+            return false;
+        }
+        record.radii[1] = record.radii[1].max(record.radii[0]);
+        // The direction code errs by up to 0.006°.
+        record.u = (record.u - record.normal * record.u.dot(record.normal)).normalize_or(record.u);
+        if !self.store.insert(&record, self.params.accuracy.max(0.0)) {
+            return false;
+        }
+        self.average.add(record.value);
+        self.records.push(record);
+        true
+    }
+
+    /// The radiance that stands for what is not computed: `-av`, or the average of `-aw`.
+    pub fn fallback(&self) -> Rgb {
+        self.average.fallback(&self.params)
+    }
+
+    /// True if a query of this depth gets the fallback.
+    pub(crate) fn ends_at(&self, level: u8) -> bool {
+        self.params.divisions <= 0 || i32::from(level) >= self.params.bounces.min(255)
+    }
+
+    /// Answers from what is stored. Include and exclude lists are the caller's business, before this.
+    pub fn ask<S: Sampler>(&self, sampler: &S, query: &Query<S::Origin>) -> Answer {
+        if self.ends_at(query.level) {
+            return Answer::Fallback(self.fallback());
+        }
+        if !self.params.caches() {
+            return Answer::Uncached;
+        }
+        self.lookup(sampler, query).map_or(Answer::Miss, Answer::Value)
+    }
+
+    /// The interpolated value, if records qualify.
+    pub(crate) fn lookup<S: Sampler>(&self, sampler: &S, query: &Query<S::Origin>) -> Option<Rgb> {
+        self.store.lookup(&self.limits, sampler, query).answer()
+    }
+}

@@ -1,0 +1,99 @@
+//! Azimuths in which something stands nearer than the record reaches: 32 bits, for which look-ups trace a short ray.
+
+use crate::lookup::sector_of_angle;
+use ambit_base::{DVec3, EPSILON};
+use std::f64::consts::PI;
+
+/// Sides of the grid below which the border is too coarse to tell azimuths.
+const MIN_SIDE: usize = 8;
+
+/// The bits of a record: `points` are the sample directions in the frame (tangential components suffice), `nearness`
+/// the reciprocal distances of the closest sample of each cell; `reach` are the radii along the axes turned by `turn`,
+/// times the tolerance.
+///
+/// Radiance skips occluders nearer than R₋a + 0.001, since its probe would reject the record at its own place; the
+/// look-up here accepts coincident queries without a probe, so the nearest occluders count too.
+pub(crate) fn corral(n: usize, points: &[DVec3], nearness: &[f64], reach: [f64; 2], turn: f64) -> u32 {
+    if n < MIN_SIDE {
+        return 0;
+    }
+    // The ceiling: the middle half of the grid each way.
+    let (from, to) = (n / 4, n - n / 4);
+    let mut overhead = 0.0;
+    for i in from..to {
+        overhead += nearness[i * n + from..i * n + to].iter().sum::<f64>();
+    }
+    overhead /= ((to - from) * (to - from)) as f64;
+    if overhead * reach[0] >= 1.0 {
+        return 0;
+    }
+    let spread = PI / (2.0 * n as f64);
+    let mut bits = 0u32;
+    for cell in border(n) {
+        let (near, p) = (nearness[cell], points[cell]);
+        let flat = p.x.hypot(p.y);
+        if near <= EPSILON || flat == 0.0 {
+            continue;
+        }
+        let azimuth = p.y.atan2(p.x) - turn;
+        let (s, c) = azimuth.sin_cos();
+        if near * (reach[0] * c).hypot(reach[1] * s) > 1.0 {
+            let (first, last) = (sector_of_angle(azimuth - spread), sector_of_angle(azimuth + spread));
+            let mut k = first;
+            bits |= 1 << k;
+            while k != last {
+                k = (k + 1) & 31;
+                bits |= 1 << k;
+            }
+        }
+    }
+    bits
+}
+
+/// The cells on the border of the grid.
+pub(crate) fn border(n: usize) -> impl Iterator<Item = usize> {
+    let rows = (0..n).flat_map(move |j| [j, (n - 1) * n + j]);
+    let columns = (1..n - 1).flat_map(move |i| [i * n, i * n + n - 1]);
+    rows.chain(columns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wall_on_one_side_sets_the_bits_of_that_side() {
+        let n = 32;
+        let points: Vec<DVec3> = (0..n * n)
+            .map(|c| {
+                let [p, q] =
+                    ambit_base::square_to_disk(((c % n) as f64 + 0.5) / n as f64, ((c / n) as f64 + 0.5) / n as f64);
+                DVec3::new(p, q, (1.0 - p * p - q * q).sqrt())
+            })
+            .collect();
+        // A wall at x = 0.1: distance 0.1/p where p > 0.
+        let nearness: Vec<f64> = points.iter().map(|p| (p.x / 0.1).max(0.0)).collect();
+        let bits = corral(n, &points, &nearness, [0.2, 0.2], 0.0);
+        // cos φ > 0.1/0.2, so azimuths within ±60°: sectors 27…31 and 0…5, those at the ends cut by the border's tilt.
+        for k in [0, 1, 2, 3, 28, 29, 30, 31] {
+            assert!(bits >> k & 1 == 1, "sector {k} of {bits:032b}");
+        }
+        for k in 7..25 {
+            assert!(bits >> k & 1 == 0, "sector {k} of {bits:032b}");
+        }
+        // Turned axes: the wall moves from azimuth 0 to −90°.
+        let turned = corral(n, &points, &nearness, [0.2, 0.2], PI / 2.0);
+        assert_eq!(turned, bits.rotate_right(8));
+        assert_eq!(corral(n, &points, &nearness, [0.01, 0.01], 0.0), 0);
+        let ceiling = vec![100.0; n * n];
+        assert_eq!(corral(n, &points, &ceiling, [0.2, 0.2], 0.0), 0);
+    }
+
+    #[test]
+    fn the_border_has_every_cell_once() {
+        let mut cells: Vec<usize> = border(8).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        assert_eq!(cells.len(), 28);
+    }
+}

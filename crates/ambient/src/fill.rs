@@ -1,0 +1,319 @@
+//! Filling the cache in parallel, with results that do not depend on the number of threads.
+//!
+//! Breadth first, level by level, in rounds of misses that cannot cover each other: picks stand at least the largest
+//! reach a·R₊ apart. Their samples are traced in parallel against the frozen cache; what those miss is resolved together
+//! one level down; then the records are made in parallel and published in order. Queries a round's records do not answer
+//! stay for the next; once every query has been considered at a distance, the distance is halved.
+//!
+//! Nothing depends on time, threads or the order in which they finish: streams are keyed by the bits of position, normal
+//! and level, sums follow list order, and the constants below are part of the result.
+
+use crate::cache::Cache;
+use crate::finish::{Cell, Outcome, finish, least_distance};
+use crate::gather::{Job, Sampled, trace};
+use crate::hemisphere::Hemisphere;
+use crate::parallel::in_order;
+use crate::params::Params;
+use crate::sampler::{Miss, Query, Sampler};
+use crate::select::{CAP, Selection, select};
+use crate::store::Store;
+use crate::supersample::{allocate, budget};
+use ambit_base::{Colour, Rgb, Stream, hash_bits, hash_point};
+
+/// Misses that are resolved together; later windows profit from the records of earlier ones.
+const WINDOW: usize = 4096;
+/// Samples one task traces.
+const CHUNK: usize = 32;
+/// Look-ups below which a parallel step costs more than it saves.
+const FEW: usize = 64;
+
+/// One hemisphere of a round.
+struct Pick {
+    /// The query's place in the window.
+    query: usize,
+    plan: Hemisphere,
+    /// The first of its cells among those of the round.
+    first: usize,
+}
+
+impl Cache {
+    /// Computes what records are needed and answers every miss, in order. Values are irradiance/π at the query, to be
+    /// multiplied by the miss's coefficient.
+    pub fn resolve<S: Sampler>(&mut self, sampler: &S, misses: &[Miss<S::Origin>]) -> Vec<Rgb> {
+        let mut values = vec![Rgb::ZERO; misses.len()];
+        let mut levels: Vec<u8> = misses.iter().map(|m| m.query.level).collect();
+        levels.sort_unstable();
+        levels.dedup();
+        for level in levels {
+            let at: Vec<usize> = (0..misses.len()).filter(|&k| misses[k].query.level == level).collect();
+            for (number, window) in at.chunks(WINDOW).enumerate() {
+                self.window(sampler, misses, level, window, number > 0, &mut values);
+            }
+        }
+        values
+    }
+
+    /// Answers the misses `window` points at, all of one level; `stale` if records have come since they missed.
+    fn window<S: Sampler>(
+        &mut self,
+        sampler: &S,
+        misses: &[Miss<S::Origin>],
+        level: u8,
+        window: &[usize],
+        stale: bool,
+        values: &mut [Rgb],
+    ) {
+        if self.ends_at(level) || !self.params.caches() {
+            let fallback = self.fallback();
+            window.iter().for_each(|&k| values[k] = fallback);
+            return;
+        }
+        let mut open = window.to_vec();
+        if stale {
+            let store = &self.store;
+            let found = self.look(sampler, store, misses, &open);
+            open = settle(&open, &found, values);
+        }
+        let queries: Vec<Query<S::Origin>> = open.iter().map(|&k| misses[k].query).collect();
+        let answers = self.rounds(sampler, level, &queries);
+        for (&k, answer) in open.iter().zip(answers) {
+            values[k] = answer;
+        }
+    }
+
+    /// Looks up the misses `at`, in parallel.
+    fn look<S: Sampler>(
+        &self,
+        sampler: &S,
+        store: &Store,
+        misses: &[Miss<S::Origin>],
+        at: &[usize],
+    ) -> Vec<Option<Rgb>> {
+        in_order(at.len(), FEW, FEW / 2, |i| store.lookup(&self.limits, sampler, &misses[at[i]].query).answer())
+    }
+
+    /// Fills the cache until every query has an answer.
+    fn rounds<S: Sampler>(&mut self, sampler: &S, level: u8, queries: &[Query<S::Origin>]) -> Vec<Rgb> {
+        let limits = self.limits;
+        let mut values = vec![Rgb::ZERO; queries.len()];
+        let mut picked = vec![false; queries.len()];
+        let mut exempt = vec![false; queries.len()];
+        let mut open: Vec<usize> = (0..queries.len()).collect();
+        let mut apart = limits.accuracy * limits.max_radius;
+        let least = 0.5 * limits.accuracy * limits.min_radius;
+        while !open.is_empty() {
+            self.statistics.rounds += 1;
+            let Selection { picks, maximal, blocked } = select(&limits, queries, &open, &exempt, apart);
+            let outcomes = self.hemispheres(sampler, level, queries, &picks);
+            let delta = self.publish(sampler, queries, &picks, &outcomes, &mut values);
+            let mut wasted = [false; CAP];
+            for (k, outcome) in outcomes.iter().enumerate() {
+                picked[picks[k]] = true;
+                wasted[k] = !matches!(outcome, Outcome::Record(..));
+            }
+            // Those that waited for a record that could not be stored need not keep away from it again.
+            for (query, pick) in blocked {
+                exempt[query] |= wasted[pick];
+            }
+            open.retain(|&q| !picked[q]);
+            let found =
+                in_order(open.len(), FEW, FEW / 2, |i| delta.lookup(&limits, sampler, &queries[open[i]]).answer());
+            open = settle(&open, &found, &mut values);
+            if maximal {
+                apart = (0.5 * apart).max(least);
+            }
+        }
+        // The round's records alone gave a provisional answer; all of them give the final one.
+        let last =
+            in_order(queries.len(), FEW, FEW / 2, |q| if picked[q] { None } else { self.lookup(sampler, &queries[q]) });
+        for (value, last) in values.iter_mut().zip(last) {
+            *value = last.unwrap_or(*value);
+        }
+        values
+    }
+
+    /// Stores the records of a round in order; returns them in a tree of their own.
+    fn publish<S: Sampler>(
+        &mut self,
+        sampler: &S,
+        queries: &[Query<S::Origin>],
+        picks: &[usize],
+        outcomes: &[Outcome],
+        values: &mut [Rgb],
+    ) -> Store {
+        let fallback = self.fallback();
+        let mut delta = self.store.emptied();
+        for (&q, outcome) in picks.iter().zip(outcomes) {
+            values[q] = match *outcome {
+                Outcome::Record(record, value) => {
+                    let covered = delta.lookup(&self.limits, sampler, &queries[q]).answer().is_some();
+                    if !covered && self.insert(record) {
+                        delta.insert(&record, self.params.accuracy);
+                    }
+                    value
+                }
+                Outcome::Once(value) => {
+                    self.statistics.unstored += 1;
+                    value
+                }
+                Outcome::Nothing => fallback,
+            };
+        }
+        delta
+    }
+
+    /// Samples the hemispheres of a round and makes their records.
+    fn hemispheres<S: Sampler>(
+        &mut self,
+        sampler: &S,
+        level: u8,
+        queries: &[Query<S::Origin>],
+        chosen: &[usize],
+    ) -> Vec<Outcome> {
+        let params = self.params;
+        let mut picks: Vec<Pick> = in_order(chosen.len(), 2, 1, |k| {
+            let q = &queries[chosen[k]];
+            let weight = Params::record_weight(level, q.weight);
+            let stream = Stream::new(0, key(q, params.seed));
+            Hemisphere::new(&params, weight, 1.0, q.normal, stream, true).map(|plan| Pick {
+                query: chosen[k],
+                plan,
+                first: 0,
+            })
+        })
+        .into_iter()
+        .flatten()
+        .collect();
+        debug_assert_eq!(picks.len(), chosen.len(), "a cache without divisions ends before this");
+        let mut total = 0;
+        for pick in &mut picks {
+            pick.first = total;
+            total += pick.plan.len();
+        }
+        let jobs = jobs(picks.iter().map(|p| p.plan.len()));
+        let sampled = trace(self, sampler, &jobs, |pick, sample| {
+            let Pick { query, plan, .. } = &picks[pick];
+            (&queries[*query], plan.direction(sample), plan.child_weight(), plan.stream(sample))
+        });
+        let returned = self.completed(sampler, level, sampled);
+        let mut cells: Vec<Cell> = Vec::with_capacity(total);
+        let least = least_distance(&self.limits);
+        cells.extend(returned.iter().map(|r| match *r {
+            Some(s) => {
+                let distance = s.distance.max(least);
+                Cell { radiance: s.radiance, distance, nearness: 1.0 / distance }
+            }
+            None => Cell { radiance: Rgb::ZERO, distance: 0.0, nearness: 0.0 },
+        }));
+        self.extras(sampler, level, queries, &picks, &mut cells);
+        let limits = self.limits;
+        let quantised = self.quantised;
+        in_order(picks.len(), 2, 1, |k| {
+            let Pick { query, plan, first } = &picks[k];
+            let outcome = finish(&limits, &queries[*query], plan, &cells[*first..first + plan.len()]);
+            if quantised { outcome.quantised(&queries[*query]) } else { outcome }
+        })
+    }
+
+    /// Extra samples where cells differ from their neighbours.
+    fn extras<S: Sampler>(
+        &mut self,
+        sampler: &S,
+        level: u8,
+        queries: &[Query<S::Origin>],
+        picks: &[Pick],
+        cells: &mut [Cell],
+    ) {
+        let params = self.params;
+        // Per pick, the cell of every extra sample and its number within the cell.
+        let wanted: Vec<Vec<(usize, u32)>> = in_order(picks.len(), 2, 1, |k| {
+            let Pick { query, plan, first } = &picks[k];
+            let own = &cells[*first..first + plan.len()];
+            let weight = Params::record_weight(level, queries[*query].weight);
+            let budget = budget(params.super_samples, weight, plan.side());
+            if budget == 0 || own.iter().any(|c| c.distance <= 0.0) {
+                return Vec::new();
+            }
+            let brightness: Vec<f32> = own.iter().map(|c| c.radiance.brightness()).collect();
+            let counts = allocate(plan.side(), &brightness, budget, |cell| plan.share(cell));
+            counts.iter().enumerate().flat_map(|(cell, &m)| (0..m).map(move |k| (cell, k))).collect()
+        });
+        if wanted.iter().all(Vec::is_empty) {
+            return;
+        }
+        let jobs = jobs(wanted.iter().map(Vec::len));
+        let sampled = trace(self, sampler, &jobs, |pick, sample| {
+            let Pick { query, plan, .. } = &picks[pick];
+            let (cell, k) = wanted[pick][sample];
+            let direction = plan.frame().to_world(plan.extra_local(cell, k));
+            (&queries[*query], direction, plan.child_weight(), plan.stream(plan.len() + sample))
+        });
+        let returned = self.completed(sampler, level, sampled);
+        let least = least_distance(&self.limits);
+        let mut returned = returned.iter();
+        for (pick, wanted) in picks.iter().zip(&wanted) {
+            for run in wanted.chunk_by(|a, b| a.0 == b.0) {
+                let cell = &mut cells[pick.first + run[0].0];
+                let (mut sum, mut count) = (cell.radiance, 1.0);
+                for sample in returned.by_ref().take(run.len()).flatten() {
+                    sum += sample.radiance;
+                    count += 1.0;
+                    cell.nearness = cell.nearness.max(1.0 / sample.distance.max(least));
+                }
+                cell.radiance = sum / count;
+            }
+        }
+    }
+
+    /// Resolves what the samples missed, one level down, and adds it to them.
+    fn completed<S: Sampler>(
+        &mut self,
+        sampler: &S,
+        level: u8,
+        sampled: Sampled<S::Origin>,
+    ) -> Vec<Option<crate::Sample>> {
+        let Sampled { mut returned, owners, misses, repaired } = sampled;
+        let level = usize::from(level);
+        if self.statistics.samples.len() <= level {
+            self.statistics.samples.resize(level + 1, 0);
+        }
+        self.statistics.samples[level] += returned.len() as u64;
+        self.statistics.repaired += repaired;
+        if !misses.is_empty() {
+            let answers = self.resolve(sampler, &misses);
+            for ((owner, miss), answer) in owners.iter().zip(&misses).zip(answers) {
+                if let Some(sample) = &mut returned[*owner as usize] {
+                    sample.radiance += miss.coefficient * answer;
+                }
+            }
+        }
+        returned
+    }
+}
+
+/// Takes what was found as values; returns what is still open.
+fn settle(open: &[usize], found: &[Option<Rgb>], values: &mut [Rgb]) -> Vec<usize> {
+    let mut left = Vec::new();
+    for (&k, found) in open.iter().zip(found) {
+        match found {
+            Some(value) => values[k] = *value,
+            None => left.push(k),
+        }
+    }
+    left
+}
+
+/// Tasks of at most [`CHUNK`] samples of one hemisphere.
+fn jobs(lengths: impl Iterator<Item = usize>) -> Vec<Job> {
+    let mut jobs = Vec::new();
+    for (pick, length) in lengths.enumerate() {
+        let starts = (0..length).step_by(CHUNK);
+        jobs.extend(starts.map(|from| Job { pick, from, to: (from + CHUNK).min(length) }));
+    }
+    jobs
+}
+
+/// Names the random numbers of a record by what it is: position, normal and level.
+fn key<O>(query: &Query<O>, seed: u64) -> u64 {
+    hash_bits(&[hash_point(query.position), hash_point(query.normal), u64::from(query.level), seed])
+}

@@ -1,0 +1,132 @@
+//! From the samples of a hemisphere to a record: mean, gradients, radii, corral.
+
+use crate::corral::{border, corral};
+use crate::hemisphere::Hemisphere;
+use crate::lookup::{MAX_FACTOR, MIN_FACTOR};
+use crate::mesh::{mesh, rotational};
+use crate::params::{Limits, Params};
+use crate::radii::{Ellipse, circle, ellipse, turned};
+use crate::record::Record;
+use crate::sampler::Query;
+use ambit_base::{Colour, DVec3, EPSILON, Rgb};
+
+/// Share of the black floor in relative radiances, which keeps black occluders visible to the Hessian.
+const FLOOR: f64 = 0.01;
+/// Mean radiances up to this are black: products of sample radiances with it stay normal numbers.
+const BLACK: f64 = 1e-30;
+/// Share of the border that must see something nearer than the smallest reach to hold the radius down to it.
+const CROWDED: f64 = 0.1;
+/// Normals whose cosine is at least this count as one: no texture.
+const UNTEXTURED: f64 = 0.9999;
+
+/// What is known of one cell of a hemisphere.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cell {
+    /// Mean radiance of its samples.
+    pub(crate) radiance: Rgb,
+    /// Distance of the first sample; 0 if it was refused.
+    pub(crate) distance: f64,
+    /// Reciprocal distance of the closest sample.
+    pub(crate) nearness: f64,
+}
+
+/// What a hemisphere came to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Outcome {
+    /// A record, and its answer to the query that asked.
+    Record(Record, Rgb),
+    /// Some samples were refused: an answer to use once.
+    Once(Rgb),
+    /// All samples were refused.
+    Nothing,
+}
+
+impl Outcome {
+    /// The record as an ambient file returns it, and its answer.
+    pub(crate) fn quantised<O>(self, query: &Query<O>) -> Self {
+        match self {
+            Self::Record(record, _) => {
+                let record = record.quantised();
+                Self::Record(record, answer(&record, query))
+            }
+            other => other,
+        }
+    }
+}
+
+/// The least distance that counts, so that no reciprocal gets out of hand.
+pub(crate) fn least_distance(limits: &Limits) -> f64 {
+    EPSILON.min(EPSILON * limits.unit).max(1e-4 * limits.min_radius)
+}
+
+/// Turns cells into a record.
+pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, cells: &[Cell]) -> Outcome {
+    let n = plan.side();
+    let share = 1.0 / cells.len() as f64;
+    let taken = cells.iter().filter(|c| c.distance > 0.0).count();
+    if taken == 0 {
+        return Outcome::Nothing;
+    }
+    let sum: DVec3 = cells.iter().filter(|c| c.distance > 0.0).map(|c| c.radiance.as_dvec3()).sum();
+    let value = (sum * share).as_vec3();
+    if taken < cells.len() {
+        return Outcome::Once(value);
+    }
+    let weight = Params::record_weight(query.level, query.weight);
+    let directions: Vec<DVec3> = (0..cells.len()).map(|c| plan.local(c)).collect();
+    let nearness: Vec<f64> = cells.iter().map(|c| c.nearness).collect();
+    let mean = value.mean();
+    let (shape, rotation) = if f64::from(mean) > BLACK {
+        let relative = |c: &Cell| (1.0 - FLOOR) * (f64::from(c.radiance.mean() / mean) - 1.0);
+        let values: Vec<f64> = cells.iter().map(relative).collect();
+        let far = 10.0 * limits.edge + 1000.0;
+        let points: Vec<DVec3> = directions.iter().zip(cells).map(|(d, c)| *d * c.distance.min(far)).collect();
+        let derivatives = mesh(n, &points, &values);
+        let crowd = 1.0 / (limits.min_radius * limits.accuracy);
+        let crowded = border(n).filter(|&c| nearness[c] > crowd).count() as f64;
+        let least = crowded > CROWDED * border(n).count() as f64;
+        let shape = if derivatives.is_finite() {
+            ellipse(&derivatives, limits, weight, least)
+        } else {
+            harmonic(&nearness, limits, weight)
+        };
+        (shape, turned(rotational(n, &directions, &values), shape.turn))
+    } else {
+        (harmonic(&nearness, limits, weight), [0.0; 2])
+    };
+    let reach = shape.radii.map(|r| r * limits.accuracy);
+    let frame = plan.frame();
+    let (s, c) = shape.turn.sin_cos();
+    let u = frame.u * c + frame.v * s;
+    let record = Record {
+        position: query.position,
+        normal: query.normal,
+        u: (u - query.normal * u.dot(query.normal)).normalize(),
+        level: query.level,
+        weight,
+        radii: shape.radii.map(|r| r as f32),
+        gradient: shape.gradient.map(|g| g as f32),
+        rotation: rotation.map(|h| h as f32),
+        corral: corral(n, &directions, &nearness, reach, shape.turn),
+        value,
+    };
+    if record.is_plausible() { Outcome::Record(record, answer(&record, query)) } else { Outcome::Once(value) }
+}
+
+/// Without derivatives the harmonic mean of the sample distances tells how fast light may change.
+fn harmonic(nearness: &[f64], limits: &Limits, weight: f32) -> Ellipse {
+    let sum: f64 = nearness.iter().sum();
+    let radius = if sum > 0.0 { nearness.len() as f64 / sum } else { limits.max_radius };
+    circle(radius, limits, weight)
+}
+
+/// What a record answers at its own place, for a shading normal that textures may have turned.
+pub(crate) fn answer<O>(record: &Record, query: &Query<O>) -> Rgb {
+    if query.normal.dot(query.shading) >= UNTEXTURED {
+        return record.value;
+    }
+    let turn = record.normal.cross(query.shading);
+    let [hu, hv] = record.rotation.map(f64::from);
+    let factor = 1.0 + turn.dot(record.u) * hu + turn.dot(record.v()) * hv;
+    record.value * (factor as f32).clamp(MIN_FACTOR, MAX_FACTOR)
+}

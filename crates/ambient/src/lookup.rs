@@ -1,0 +1,178 @@
+//! Whether a record may answer a query, with what weight, and what it answers: the tests in order of Radiance 6.0a, a
+//! product of two hat functions (Schwarzhaupt, Jensen, Jarosz 2012 for the ellipse) and first-order extrapolation
+//! (Ward & Heckbert 1992, *Irradiance Gradients*).
+
+use crate::params::Limits;
+use crate::sampler::{Query, Sampler};
+use crate::store::{Derived, Place};
+use ambit_base::{DVec3, EPSILON, Rgb, Vec3};
+
+/// Least extrapolation factor; a record that falls to it is not used.
+pub(crate) const MIN_FACTOR: f32 = 0.05;
+/// Largest extrapolation factor.
+pub(crate) const MAX_FACTOR: f32 = 20.0;
+/// Relative rounding of positions in ambient files (31-bit mantissas), allowed for in the tests across the plane.
+const ROUNDING: f64 = 1e-9;
+/// Queries this near to a corralled record, as a fraction of its reach, need no probe: the azimuth of so short a vector
+/// means nothing, and probing would reject a record at its own place.
+const COINCIDENT: f32 = 1e-3;
+/// cos² of the angle to the normal at which the corral's probe passes over the query's surface (20° above its plane).
+const PROBE_COS2: f64 = 0.116_977_778_440_510_98;
+
+/// A query, prepared for many comparisons.
+pub(crate) struct Asked {
+    pub(crate) position: DVec3,
+    normal: Vec3,
+    shading: Vec3,
+    pub(crate) level: u8,
+    /// Records of the query's own level must weigh at least this.
+    pub(crate) least_weight: f32,
+    /// Largest angle between normals, of full weight and opened for dim rays.
+    angle: f32,
+    pub(crate) opened: f32,
+    accuracy: f32,
+    /// How far below a record's plane a query may lie.
+    behind: f32,
+    rounding: f32,
+    /// Within this distance a record that would be rejected for its steep extrapolation still serves as last resort.
+    spare_reach: f32,
+}
+
+impl Asked {
+    pub(crate) fn new<O>(query: &Query<O>, limits: &Limits) -> Self {
+        let rounding = ROUNDING * query.position.abs().max_element();
+        Self {
+            position: query.position,
+            normal: query.normal.as_vec3(),
+            shading: query.shading.as_vec3(),
+            level: query.level,
+            least_weight: 0.9 * query.weight,
+            angle: limits.max_angle as f32,
+            opened: limits.opened_angle(query.weight) as f32,
+            accuracy: limits.accuracy as f32,
+            behind: (limits.min_radius * limits.accuracy + rounding) as f32,
+            rounding: rounding as f32,
+            spare_reach: (0.5 * limits.min_radius * limits.accuracy) as f32,
+        }
+    }
+
+    /// The angle limit within a list whose first record has the given level.
+    #[inline]
+    pub(crate) fn angle_for(&self, first_level: u8) -> f32 {
+        if first_level <= self.level { self.opened } else { self.angle }
+    }
+}
+
+/// Weighted sum over the records that qualify.
+pub(crate) struct Sum {
+    pub(crate) weight: f32,
+    value: Rgb,
+    spare: Option<(f32, Rgb)>,
+}
+
+impl Sum {
+    pub(crate) const EMPTY: Self = Self { weight: 0.0, value: Rgb::ZERO, spare: None };
+
+    /// The interpolated value, if anything qualified.
+    pub(crate) fn answer(&self) -> Option<Rgb> {
+        if f64::from(self.weight) > EPSILON {
+            Some(self.value / self.weight)
+        } else {
+            self.spare.map(|(_, value)| value)
+        }
+    }
+}
+
+/// Adds one record to the sum, returning its weight; 0 if it does not qualify. Level and weight are tested by the caller.
+#[inline]
+pub(crate) fn accumulate<S: Sampler>(
+    asked: &Asked,
+    angle: f32,
+    place: &Place,
+    derived: &Derived,
+    sampler: &S,
+    query: &Query<S::Origin>,
+    sum: &mut Sum,
+) -> f32 {
+    let a2 = asked.accuracy * asked.accuracy;
+    let delta = asked.position - DVec3::from_array(place.position);
+    let d = delta.as_vec3();
+    let d2 = d.length_squared();
+    // The ellipse lies within the sphere of the longer radius.
+    if d2 * place.inverse_radii[1] * place.inverse_radii[1] >= a2 {
+        return 0.0;
+    }
+    let normal = Vec3::from_array(place.normal);
+    // 2 − 2 cos of the angle between the normals, without cancellation.
+    let tilt2 = (asked.normal - normal).length_squared();
+    if tilt2 >= 2.0 || tilt2 >= angle * angle {
+        return 0.0;
+    }
+    let dn = d.dot(normal);
+    if dn < -asked.behind {
+        return 0.0;
+    }
+    let u = Vec3::from_array(place.u);
+    let v = normal.cross(u);
+    let (du, dv) = (d.dot(u), d.dot(v));
+    let [i0, i1] = place.inverse_radii;
+    let (en, eu, ev) = ((dn.abs() - asked.rounding).max(0.0) * i0, du * i0, dv * i1);
+    let reach2 = en * en + eu * eu + ev * ev;
+    if reach2 >= a2 {
+        return 0.0;
+    }
+    if place.corralled != 0 && d2 * i0 * i0 > a2 * COINCIDENT * COINCIDENT {
+        let k = sector(du, dv);
+        if derived.corral >> k & 1 != 0 && fenced(delta, place, sampler, query) {
+            return 0.0;
+        }
+    }
+    let turn = normal.cross(asked.shading);
+    let [gu, gv] = derived.gradient;
+    let [hu, hv] = derived.rotation;
+    let factor = 1.0 + du * gu + dv * gv + turn.dot(u) * hu + turn.dot(v) * hv;
+    let value = Rgb::from_array(derived.value);
+    if factor <= MIN_FACTOR {
+        if d2 < asked.spare_reach * asked.spare_reach && sum.spare.is_none_or(|(nearest, _)| d2 < nearest) {
+            sum.spare = Some((d2, value * MIN_FACTOR));
+        }
+        return 0.0;
+    }
+    let weight = (1.0 - tilt2.sqrt() / angle) * (1.0 - reach2.sqrt() / asked.accuracy);
+    sum.weight += weight;
+    sum.value += value * (factor.min(MAX_FACTOR) * weight);
+    weight
+}
+
+/// The corral sector of a tangential vector: 32 of 11.25° each, from `u` towards `v`.
+#[inline]
+pub(crate) fn sector(u: f32, v: f32) -> u32 {
+    sector_of_angle(f64::from(v).atan2(f64::from(u)))
+}
+
+/// The corral sector of an azimuth in radians, of any sign.
+pub(crate) fn sector_of_angle(azimuth: f64) -> u32 {
+    (azimuth * (16.0 / std::f64::consts::PI)).floor().rem_euclid(32.0) as u32 & 31
+}
+
+/// True if something stands between the query and the point above the record that appears 20° above the query's plane.
+#[cold]
+fn fenced<S: Sampler>(delta: DVec3, place: &Place, sampler: &S, query: &Query<S::Origin>) -> bool {
+    let normal = Vec3::from_array(place.normal).as_dvec3();
+    let to_record = -delta;
+    // D(t) = to_record + t·normal with (D·N)² = κ|D|².
+    let (nn, dn, dm) = (normal.dot(query.normal), to_record.dot(query.normal), to_record.dot(normal));
+    let a = nn * nn - PROBE_COS2;
+    let half_b = nn * dn - PROBE_COS2 * dm;
+    let c = dn * dn - PROBE_COS2 * to_record.length_squared();
+    let discriminant = half_b * half_b - a * c;
+    if a.abs() < EPSILON || discriminant.is_nan() || discriminant <= 0.0 {
+        return true;
+    }
+    let root = discriminant.sqrt();
+    let t = ((-half_b + root) / a).max((-half_b - root) / a);
+    if t <= EPSILON {
+        return false;
+    }
+    sampler.occluded(query, query.position, to_record + normal * t)
+}

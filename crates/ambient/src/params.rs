@@ -1,0 +1,154 @@
+//! What the options of the cache mean in numbers: tolerance, radii and record weights.
+
+use ambit_base::{EPSILON, Rgb};
+
+/// The reflectance assumed of every surface when the importance of deeper bounces is estimated: level ℓ counts ½^ℓ.
+/// It is part of the meaning of ambient files, whose records are shared between surfaces of all reflectances.
+pub const ASSUMED_REFLECTANCE: f64 = 0.5;
+
+/// The options of the diffuse indirect calculation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Params {
+    /// `-ab`: the largest number of nested diffuse bounces; 0 or less gives the fallback everywhere. At most 255 count.
+    pub bounces: i32,
+    /// `-aa`: the tolerance; multiplies radii at look-up. At most [`EPSILON`] switches caching off.
+    pub accuracy: f64,
+    /// `-ar`: the edge of the octree cube over the smallest radius; 0 or less: no smallest radius.
+    pub resolution: i32,
+    /// `-ad`: hemisphere samples at weight 1; 0 or less gives the fallback everywhere.
+    pub divisions: i32,
+    /// `-as`: extra hemisphere samples at weight 1.
+    pub super_samples: i32,
+    /// `-av`: radiance used where the calculation stops, W/(sr·m²).
+    pub value: Rgb,
+    /// `-aw`: the number of records `-av` counts for in the running average; 0 or less: no averaging.
+    pub weight: i32,
+    /// `-lw`: the smallest ray weight, which limits the divisions of uncached hemispheres.
+    pub min_weight: f64,
+    /// Names the set of random numbers; two runs with equal seeds agree in every bit.
+    pub seed: u64,
+}
+
+impl Default for Params {
+    /// The defaults of `rpict`.
+    fn default() -> Self {
+        Self {
+            bounces: 0,
+            accuracy: 0.2,
+            resolution: 64,
+            divisions: 512,
+            super_samples: 128,
+            value: Rgb::ZERO,
+            weight: 0,
+            min_weight: 1e-4,
+            seed: 0,
+        }
+    }
+}
+
+impl Params {
+    /// True if records are stored and reused.
+    pub fn caches(&self) -> bool {
+        self.accuracy > EPSILON
+    }
+
+    /// The weight of a record asked for at depth `level` by a ray of weight `ray`: ½^level, lowered to 1.25 times the
+    /// ray's where that is less than a tenth of it.
+    pub fn record_weight(level: u8, ray: f32) -> f32 {
+        let nominal = ASSUMED_REFLECTANCE.powi(i32::from(level)) as f32;
+        // A ray of no weight at all still makes a record that a file accepts (0 < weight).
+        if ray < 0.1 * nominal { (1.25 * ray).max(f32::MIN_POSITIVE) } else { nominal }
+    }
+}
+
+/// Radii and angles that follow from the options and the size of the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// The tolerance `a`.
+    pub accuracy: f64,
+    /// Smallest stored radius before widening by level, scene units.
+    pub min_radius: f64,
+    /// Largest stored radius, scene units.
+    pub max_radius: f64,
+    /// The edge of the scene's cube, scene units.
+    pub edge: f64,
+    /// The largest angle between the normals of a record and a query of full weight, radians.
+    pub max_angle: f64,
+    /// 1, or the cube's edge where that is smaller: what the absolute tolerances of the method are scaled by, so that
+    /// models in very small units keep their light.
+    pub unit: f64,
+}
+
+/// The angle two normals may always differ by, radians; the tolerance is added to it.
+pub const BASE_ANGLE: f64 = 10.0 * std::f64::consts::PI / 180.0;
+
+impl Limits {
+    /// Limits for a scene whose cube has the given edge.
+    ///
+    /// The smallest radius is `edge / resolution`, the largest 64 times that but at most a fifth of the edge. A smallest
+    /// radius that vanishes becomes 1e-5 units (less in scenes smaller than a unit).
+    pub fn new(params: &Params, edge: f64) -> Self {
+        let fifth = edge / 5.0;
+        let unit = edge.min(1.0);
+        let (mut min_radius, mut max_radius) = if params.resolution > 0 {
+            let r = edge / f64::from(params.resolution);
+            (r, (64.0 * r).min(fifth))
+        } else {
+            (0.0, fifth)
+        };
+        if min_radius <= EPSILON * unit {
+            min_radius = 10.0 * EPSILON * unit;
+        }
+        if max_radius <= min_radius {
+            max_radius = 64.0 * min_radius;
+        }
+        Self { accuracy: params.accuracy, min_radius, max_radius, edge, max_angle: BASE_ANGLE + params.accuracy, unit }
+    }
+
+    /// The angle by which normals may differ for a query of the given weight: it opens for dim rays.
+    pub fn opened_angle(&self, weight: f32) -> f64 {
+        if weight < 0.6 {
+            let right = std::f64::consts::FRAC_PI_2;
+            right - (right - self.max_angle) * f64::from(weight.max(0.0)).powf(0.13)
+        } else {
+            self.max_angle
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn radii_follow_the_resolution() {
+        let limits = |resolution, edge| {
+            let l = Limits::new(&Params { resolution, ..Params::default() }, edge);
+            (l.min_radius, l.max_radius)
+        };
+        assert_eq!(limits(0, 4.0), (1e-5, 0.8));
+        assert_eq!(limits(-3, 4.0), (1e-5, 0.8));
+        assert_eq!(limits(1, 4.0), (4.0, 256.0));
+        assert_eq!(limits(8, 4.0), (0.5, 0.8));
+        assert_eq!(limits(64, 4.0), (0.0625, 0.8));
+        assert_eq!(limits(1024, 4.0), (4.0 / 1024.0, 0.25));
+        assert_eq!(limits(0, 0.01), (1e-7, 0.002));
+    }
+
+    #[test]
+    fn dim_rays_open_the_angle() {
+        let l = Limits::new(&Params::default(), 1.0);
+        for (weight, degrees) in [(1.0, 21.46), (0.5, 27.4), (0.25, 32.8), (0.1, 39.2), (0.01, 52.3), (0.001, 62.1)] {
+            let got = l.opened_angle(weight).to_degrees();
+            assert!((got - degrees).abs() < 0.06, "weight {weight}: {got}");
+        }
+    }
+
+    #[test]
+    fn record_weights_halve_by_level_and_follow_dim_rays() {
+        for (level, ray, expected) in [(0, 1.0, 1.0), (1, 0.4, 0.5), (3, 0.2, 0.125), (0, 0.0733, 0.091_625)] {
+            assert!((Params::record_weight(level, ray) - expected).abs() < 1e-6);
+        }
+        assert!(Params::record_weight(0, 0.0) > 0.0);
+    }
+}
