@@ -65,7 +65,9 @@ impl Cache {
     ) {
         if self.ends_at(level) || !self.params.caches() {
             let fallback = self.fallback();
-            window.iter().for_each(|&k| values[k] = fallback);
+            for &k in window {
+                values[k] = fallback;
+            }
             return;
         }
         let mut open = window.to_vec();

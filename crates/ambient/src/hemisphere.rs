@@ -19,7 +19,7 @@ const RIM: f64 = 1.0 - 1e-13;
 pub(crate) mod tag {
     pub(crate) const TURN: u64 = 0x7075_726e;
     pub(crate) const CELL: u64 = 0x6365_6c6c;
-    pub(crate) const RAY: u64 = 0x7261_79;
+    pub(crate) const RAY: u64 = 0x0072_6179;
     pub(crate) const POOL: u64 = 0x706f_6f6c;
     pub(crate) const TRADE: u64 = 0x7472_6164;
     pub(crate) const EXTRA: u64 = 0x6578_7472;

@@ -19,6 +19,7 @@
 
 mod average;
 mod cache;
+mod codec;
 mod corral;
 mod fill;
 mod finish;
@@ -38,6 +39,7 @@ mod supersample;
 mod tilt;
 
 pub use cache::{Cache, Statistics};
+pub use codec::{Layout, RECORD_BYTES};
 pub use hemisphere::Hemisphere;
 pub use params::{ASSUMED_REFLECTANCE, Limits, Params};
 pub use record::Record;

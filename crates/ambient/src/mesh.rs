@@ -13,8 +13,8 @@
 //! ```
 //!
 //! All in the hemisphere's frame with x at the origin, so N = z. An inner edge counts with the difference of its two
-//! triangles' radiances. Radiances enter less their mean, as if the mesh continued to the horizon with the mean: uniform
-//! surroundings then have no gradient, where Radiance's open rim gives up to 0.65/m near walls.
+//! triangles' radiances. From its rim the mesh is continued straight down to the horizon, as walls do: uniform
+//! surroundings then have no derivatives, where Radiance's open rim gives gradients of up to 0.65/m near walls.
 
 use ambit_base::DVec3;
 use std::f64::consts::FRAC_1_PI;
@@ -91,11 +91,11 @@ pub(crate) fn mesh(n: usize, points: &[DVec3], values: &[f64]) -> Derivatives {
     let mut above = vec![0.0; n];
     for i in 0..n {
         let mut left = 0.0;
-        for j in 0..n {
+        for (j, above) in above.iter_mut().enumerate() {
             let quad = i + 1 < n && j + 1 < n;
             let (first, second) = if quad { (near(i, j), far(i, j)) } else { (0.0, 0.0) };
             if j + 1 < n {
-                edge(at(i, j), at(i, j + 1), first - above[j]);
+                edge(at(i, j), at(i, j + 1), first - *above);
             }
             if i + 1 < n {
                 edge(at(i, j), at(i + 1, j), left - first);
@@ -103,11 +103,40 @@ pub(crate) fn mesh(n: usize, points: &[DVec3], values: &[f64]) -> Derivatives {
             if quad {
                 edge(at(i, j + 1), at(i + 1, j), first - second);
             }
-            above[j] = second;
+            *above = second;
             left = second;
         }
     }
+    skirt(&rim(n), points, &distances, values, &mut sum);
     sum
+}
+
+/// The strip between the mesh's rim and the horizon: each of its quads has the radiance of the farther of two rim cells.
+fn skirt(rim: &[usize], points: &[DVec3], distances: &[f64], values: &[f64], sum: &mut Derivatives) {
+    let strip = |k: usize| {
+        let (a, b) = (rim[k], rim[(k + 1) % rim.len()]);
+        values[if distances[b] > distances[a] { b } else { a }]
+    };
+    let foot = |p: DVec3| DVec3::new(p.x, p.y, 0.0);
+    let mut before = strip(rim.len() - 1);
+    for k in 0..rim.len() {
+        let (a, b) = (points[rim[k]], points[rim[(k + 1) % rim.len()]]);
+        let value = strip(k);
+        sum.add_edge(a, b, -value);
+        sum.add_edge(a, foot(a), value - before);
+        sum.add_edge(foot(a), foot(b), value);
+        before = value;
+    }
+}
+
+/// The cells of the grid's border, counter-clockwise about the normal.
+fn rim(n: usize) -> Vec<usize> {
+    let m = n - 1;
+    let bottom = 0..m;
+    let right = (0..m).map(|i| i * n + m);
+    let top = (1..n).rev().map(|j| m * n + j);
+    let left = (1..n).rev().map(|i| i * n);
+    bottom.chain(right).chain(top).chain(left).collect()
 }
 
 /// Rotational gradient from the same cells: the mean of v·tanθ times the unit vector at azimuth + 90°, as components
@@ -135,4 +164,123 @@ pub(crate) fn rotational(n: usize, points: &[DVec3], values: &[f64]) -> [f64; 2]
         }
     }
     h.map(|x| x / (n * n) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ambit_base::square_to_disk;
+
+    /// F, ∇F and H of a polygon of unit radiance seen from the origin.
+    fn polygon(corners: &[DVec3]) -> Derivatives {
+        let mut d = Derivatives::default();
+        for (k, &a) in corners.iter().enumerate() {
+            d.add_edge(a, corners[(k + 1) % corners.len()], 1.0);
+        }
+        d
+    }
+
+    fn rectangle(x: f64, y: f64, scale: f64) -> Derivatives {
+        let corner = |a: f64, b: f64| DVec3::new(a - x, b - y, 1.0) * scale;
+        polygon(&[corner(-1.0, -0.5), corner(1.0, -0.5), corner(1.0, 0.5), corner(-1.0, 0.5)])
+    }
+
+    fn close(got: f64, expected: f64, tolerance: f64) {
+        assert!((got - expected).abs() <= tolerance, "{got} instead of {expected}");
+    }
+
+    #[test]
+    fn a_parallel_rectangle_has_exact_derivatives_at_every_scale() {
+        for scale in [1e-4, 1e-2, 1.0, 1e2, 1e5] {
+            for (x, y, g, h) in [
+                (0.0, 0.0, [0.0, 0.0], [-0.2837146, 0.0, -0.7711198]),
+                (0.5, 0.2, [-0.1451822, -0.1319328], [-0.3088712, 0.0663590, -0.5998597]),
+                (1.5, 0.3, [-0.1587352, -0.0423258], [0.2334342, 0.1012942, -0.1158869]),
+                (1.2, 0.4, [-0.2035562, -0.1008210], [0.1315145, 0.1936081, -0.1621327]),
+            ] {
+                let d = rectangle(x, y, scale);
+                (0..2).for_each(|k| close(d.gradient[k] * scale, g[k], 1e-7));
+                (0..3).for_each(|k| close(d.hessian[k] * scale * scale, h[k], 1e-7));
+            }
+        }
+    }
+
+    #[test]
+    fn a_perpendicular_wall_has_exact_derivatives() {
+        for (c, fx, hxx, hyy) in [
+            (0.1, -0.5591066, 0.1817500, -0.0466501),
+            (0.5, -0.3925594, 0.5264022, -0.1408423),
+            (1.0, -0.1753691, 0.3072634, -0.0884194),
+            (2.0, -0.0331935, 0.0497352, -0.0155618),
+        ] {
+            let corner = |y: f64, z: f64| DVec3::new(-c, y, z);
+            let d = polygon(&[corner(1.0, 0.0), corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, 0.0)]);
+            let sign = d.gradient[0].signum() * f64::signum(fx);
+            close(sign * d.gradient[0], fx, 1e-7);
+            close(sign * d.hessian[0], hxx, 1e-7);
+            close(sign * d.hessian[2], hyy, 1e-7);
+        }
+    }
+
+    #[test]
+    fn derivatives_agree_with_finite_differences() {
+        let step = 1e-5;
+        for (x, y) in [(0.1, -0.3), (0.9, 0.8), (-1.7, 0.2)] {
+            let d = rectangle(x, y, 1.0);
+            let (right, left) = (rectangle(x + step, y, 1.0), rectangle(x - step, y, 1.0));
+            close(d.hessian[0], (right.gradient[0] - left.gradient[0]) / (2.0 * step), 1e-8);
+            close(d.hessian[1], (right.gradient[1] - left.gradient[1]) / (2.0 * step), 1e-8);
+        }
+    }
+
+    fn grid(n: usize) -> Vec<DVec3> {
+        (0..n * n)
+            .map(|c| {
+                let at = |k: usize| (k as f64 + 0.5) / n as f64;
+                let [p, q] = square_to_disk(at(c % n), at(c / n));
+                DVec3::new(p, q, (1.0 - p * p - q * q).sqrt())
+            })
+            .collect()
+    }
+
+    #[test]
+    fn uniform_surroundings_cancel_whatever_the_shape() {
+        let points: Vec<DVec3> = grid(16).iter().map(|&d| d * (0.1 / d.x.max(0.02))).collect();
+        let d = mesh(16, &points, &[1.0; 256]);
+        assert!(d.gradient.iter().all(|g| g.abs() < 1e-9), "{d:?}");
+        assert!(d.hessian.iter().all(|h| h.abs() < 1e-6), "{d:?}");
+    }
+
+    #[test]
+    fn coincident_and_collinear_points_add_nothing() {
+        let mut d = Derivatives::default();
+        let p = DVec3::new(0.1, 0.2, 0.3);
+        d.add_edge(p, p, 1.0);
+        d.add_edge(p, p * 2.0, 1.0);
+        d.add_edge(p * 1e9, p * 1e-6, 1.0);
+        assert_eq!(d, Derivatives::default());
+    }
+
+    #[test]
+    fn ring_means_sum_to_the_mean_tangent() {
+        // All light at azimuth 0 to 90°: the mean of tanθ over the hemisphere is π/2, of the unit vectors 2/π.
+        for n in [7, 16, 33] {
+            let points = grid(n);
+            let values: Vec<f64> = points.iter().map(|p| f64::from(p.x > 0.0 && p.y > 0.0)).collect();
+            let [hu, hv] = rotational(n, &points, &values);
+            let tolerance = if n == 7 { 0.1 } else { 0.02 };
+            close(hu, -0.25, tolerance);
+            close(hv, 0.25, tolerance);
+        }
+    }
+
+    #[test]
+    fn the_rim_is_a_closed_loop() {
+        let rim = rim(8);
+        assert_eq!(rim.len(), 28);
+        for (k, &a) in rim.iter().enumerate() {
+            let b = rim[(k + 1) % 28];
+            assert!((a / 8).abs_diff(b / 8) + (a % 8).abs_diff(b % 8) == 1);
+        }
+    }
 }

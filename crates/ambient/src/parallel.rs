@@ -3,7 +3,12 @@
 use rayon::prelude::*;
 
 /// `f(0), f(1), … f(count − 1)`, in parallel from `least` on in pieces of at least `piece`.
-pub(crate) fn in_order<R: Send>(count: usize, least: usize, piece: usize, f: impl Fn(usize) -> R + Sync + Send) -> Vec<R> {
+pub(crate) fn in_order<R: Send>(
+    count: usize,
+    least: usize,
+    piece: usize,
+    f: impl Fn(usize) -> R + Sync + Send,
+) -> Vec<R> {
     if count < least {
         (0..count).map(f).collect()
     } else {

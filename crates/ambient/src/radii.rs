@@ -1,7 +1,7 @@
 //! Where a record may be reused: an ellipse from the Hessian's eigenvalues, limited by the gradient, by the scene's
 //! smallest and largest radius, and widened for deeper levels and dim rays.
 //!
-//! With the error over a disk ½ΔᵀHΔ integrated, r = (4/|λ|)^¼ along each eigenvector (Jarosz et al. 2012 with the error
+//! With the error over a disk `½ΔᵀHΔ` integrated, r = (4/|λ|)^¼ along each eigenvector (Jarosz et al. 2012 with the error
 //! constant of Radiance). The law has the dimension √length: it takes scene units for metres.
 
 use crate::mesh::Derivatives;

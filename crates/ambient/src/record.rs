@@ -1,5 +1,6 @@
 //! One record of the cache: irradiance at a point, its derivatives, and where it may be reused.
 
+use crate::codec::Layout;
 use ambit_base::{DVec3, Rgb};
 
 /// Irradiance at a point of a surface, with first derivatives and an ellipse of validity.
@@ -53,7 +54,7 @@ impl Record {
 
     /// The record as an ambient file would return it.
     pub fn quantised(&self) -> Self {
-        *self
+        Layout::CURRENT.decode(&Layout::CURRENT.encode(self))
     }
 
     /// The second tangent, `normal × u`.
