@@ -11,6 +11,9 @@ const RULES: &str = "/usr/share/zoneinfo";
 /// The rules of the machine if `TZ` is not set.
 const LOCAL: &str = "/etc/localtime";
 
+/// When summer time holds if a POSIX rule names it without saying: what the C library assumes.
+const SUMMER: &str = ",M3.2.0,M11.1.0";
+
 /// The rules of local time.
 #[derive(Clone, Debug)]
 pub struct Zone(TimeZone);
@@ -26,7 +29,9 @@ impl Zone {
         let rules = match tz.map(|name| name.strip_prefix(':').unwrap_or(name)) {
             None => from_file(Path::new(LOCAL)),
             Some("") => None,
-            Some(name) => from_file(&Path::new(RULES).join(name)).or_else(|| TimeZone::posix(name).ok()),
+            Some(name) => from_file(&Path::new(RULES).join(name))
+                .or_else(|| TimeZone::posix(name).ok())
+                .or_else(|| TimeZone::posix(&format!("{name}{SUMMER}")).ok()),
         };
         Self(rules.unwrap_or(TimeZone::UTC))
     }
@@ -62,6 +67,8 @@ mod tests {
     fn both_times_are_written() {
         let cet = Zone::from_variable(Some("CET-1CEST,M3.5.0,M10.5.0/3"));
         assert_eq!(capture_lines(leap_day(), &cet), ["CAPDATE= 2024:03:01 00:30:05", "GMT= 2024:02:29 23:30:05"]);
+        let summer_unsaid = Zone::from_variable(Some("XST-10XDT"));
+        assert_eq!(capture_lines(leap_day(), &summer_unsaid)[0], "CAPDATE= 2024:03:01 09:30:05");
         let july = leap_day() + Duration::from_secs(130 * 86400);
         assert_eq!(capture_lines(july, &cet)[0], "CAPDATE= 2024:07:09 01:30:05");
     }
