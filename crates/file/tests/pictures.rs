@@ -1,4 +1,5 @@
-//! Pictures that Radiance's rpict rendered of a scene of ours: pixels as pvalue tells them, bytes as rpict wrote them.
+//! Pictures that Radiance 6.0a rendered of `data/own.rad`, a scene of ours (the commands stand in their headers): pixels
+//! as pvalue tells them, bytes as rpict wrote them.
 
 use ambit_base::Rgb;
 use ambit_file::{
