@@ -316,6 +316,6 @@ fn jobs(lengths: impl Iterator<Item = usize>) -> Vec<Job> {
 }
 
 /// Names the random numbers of a record by what it is: position, normal and level.
-fn key<O>(query: &Query<O>, seed: u64) -> u64 {
+pub(crate) fn key<O>(query: &Query<O>, seed: u64) -> u64 {
     hash_bits(&[hash_point(query.position), hash_point(query.normal), u64::from(query.level), seed])
 }

@@ -36,6 +36,8 @@ mod select;
 mod separation;
 mod store;
 mod supersample;
+#[cfg(test)]
+mod tests;
 mod tilt;
 
 pub use cache::{Cache, Statistics};

@@ -1,0 +1,144 @@
+//! Rounds against the serial reference, and against themselves on other numbers of threads.
+
+use super::room::Room;
+use super::serial;
+use crate::{Answer, Cache, Params};
+use ambit_base::{DVec3, Rgb, hash_bits};
+
+fn params(bounces: i32) -> Params {
+    Params { bounces, divisions: 64, super_samples: 0, ..Params::default() }
+}
+
+/// What a run came to.
+#[derive(Debug, PartialEq)]
+struct Run {
+    values: Vec<Rgb>,
+    cache_hash: u64,
+    records: usize,
+    samples: u64,
+}
+
+impl Run {
+    fn mean(&self) -> f32 {
+        self.values.iter().map(|v| v.element_sum()).sum::<f32>() / (3 * self.values.len()) as f32
+    }
+}
+
+fn hash(cache: &Cache) -> u64 {
+    let mut words = Vec::new();
+    for r in cache.records() {
+        words.extend(r.position.to_array().map(f64::to_bits));
+        words.extend(r.u.to_array().map(f64::to_bits));
+        words.extend(r.value.to_array().map(|x| u64::from(x.to_bits())));
+        for pair in [r.radii, r.gradient, r.rotation] {
+            words.extend(pair.map(|x| u64::from(x.to_bits())));
+        }
+        words.extend([u64::from(r.corral), u64::from(r.level), u64::from(r.weight.to_bits())]);
+    }
+    hash_bits(&words)
+}
+
+fn rounds(params: Params, room: &Room, side: u32, threads: usize) -> Run {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
+    let mut cache = Cache::new(params, DVec3::splat(-0.01), 1.02);
+    let values = pool.install(|| cache.resolve(room, &room.pixels(side)));
+    Run {
+        values,
+        cache_hash: hash(&cache),
+        records: cache.records().len(),
+        samples: cache.statistics().samples.iter().sum(),
+    }
+}
+
+fn reference(params: Params, room: &Room, side: u32) -> Run {
+    let mut cache = Cache::new(params, DVec3::splat(-0.01), 1.02);
+    let mut samples = [0; 16];
+    let pixels = room.pixels(side);
+    let values = pixels.iter().map(|m| serial::ask(&mut cache, room, &m.query, &mut samples)).collect();
+    Run { values, cache_hash: hash(&cache), records: cache.records().len(), samples: samples.iter().sum() }
+}
+
+#[test]
+fn the_bits_do_not_depend_on_the_number_of_threads() {
+    let room = Room::new();
+    let mut glass = Room::new();
+    glass.weight = 0.04;
+    let coarse = |bounces| Params { accuracy: 0.4, ..params(bounces) };
+    let extra = Params { divisions: 128, super_samples: 64, ..coarse(2) };
+    let cases = [
+        (params(1), &room, 20),
+        (coarse(3), &room, 12),
+        (coarse(5), &room, 1),
+        (coarse(5), &room, 6),
+        (extra, &room, 8),
+        (coarse(2), &glass, 12),
+    ];
+    for (params, room, side) in cases {
+        let alone = rounds(params, room, side, 1);
+        assert!(alone.records > 1 && alone.mean() > 0.0);
+        for threads in [2, 3, 8] {
+            assert_eq!(alone, rounds(params, room, side, threads), "{params:?}, {side}², {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn rounds_take_the_work_of_the_serial_cache() {
+    let room = Room::new();
+    for (params, side) in [(params(1), 40), (params(3), 20), (Params { accuracy: 0.35, ..params(5) }, 16)] {
+        let (ours, serial) = (rounds(params, &room, side, 2), reference(params, &room, side));
+        let within = |a: f64, b: f64, tolerance: f64, what: &str| {
+            assert!((a / b - 1.0).abs() <= tolerance, "-ab {}: {what} {a} instead of {b}", params.bounces);
+        };
+        within(ours.records as f64, serial.records as f64, 0.05, "records");
+        within(ours.samples as f64, serial.samples as f64, 0.05, "samples");
+        within(f64::from(ours.mean()), f64::from(serial.mean()), 0.03, "mean");
+    }
+}
+
+#[test]
+fn levels_and_weights_halve() {
+    let room = Room::new();
+    let mut cache = Cache::new(params(3), DVec3::splat(-0.01), 1.02);
+    cache.resolve(&room, &room.pixels(8));
+    for level in 0..3u8 {
+        let of = cache.records().iter().filter(|r| r.level == level);
+        assert!(of.clone().count() > 0);
+        assert!(of.clone().all(|r| r.weight == 0.5f32.powi(i32::from(level))));
+    }
+    assert!(cache.records().iter().all(|r| r.level < 3));
+}
+
+#[test]
+fn asking_again_makes_no_records() {
+    let room = Room::new();
+    let mut cache = Cache::new(params(2), DVec3::splat(-0.01), 1.02);
+    let pixels = room.pixels(16);
+    cache.resolve(&room, &pixels);
+    let made = cache.records().len();
+    let missed = |cache: &Cache| pixels.iter().filter(|m| cache.ask(&room, &m.query) == Answer::Miss).count();
+    assert_eq!(missed(&cache), 0, "the same points");
+    // Another run that starts with the records of the first.
+    let mut second = Cache::new(params(2), DVec3::splat(-0.01), 1.02);
+    assert_eq!(second.load(cache.records().to_vec()), 0);
+    assert_eq!(missed(&second), 0, "a second run");
+    assert_eq!(second.load(cache.records().to_vec()), made, "duplicates are dropped");
+}
+
+#[test]
+fn a_point_beside_a_wall_is_answered_by_its_own_record() {
+    let room = Room::new();
+    let mut cache = Cache::new(params(2), DVec3::splat(-0.01), 1.02);
+    let mut miss = room.pixels(1)[0];
+    let eye = |cache: &Cache| cache.records().iter().filter(|r| r.level == 0).count();
+    for distance in [0.05, 1e-3, 1e-5] {
+        miss.query.position = DVec3::new(distance, 0.5, 0.0);
+        miss.query.normal = DVec3::Z;
+        miss.query.shading = DVec3::Z;
+        let before = eye(&cache);
+        cache.resolve(&room, &[miss; 10]);
+        let made = eye(&cache);
+        assert_eq!(made, before + 1, "{distance} from the wall");
+        assert!(matches!(cache.ask(&room, &miss.query), Answer::Value(_)), "{distance} from the wall");
+    }
+}

@@ -1,0 +1,208 @@
+//! Which records answer which queries.
+
+use crate::store::Store;
+use crate::{Cache, Limits, Miss, Params, Query, Record, Sample, Sampler};
+use ambit_base::{DVec3, Rgb, Stream};
+
+/// Nothing but a wall in the plane x = `.0`.
+struct Wall(f64);
+
+impl Sampler for Wall {
+    type Origin = ();
+
+    fn sample(&self, _: &Cache, _: &Query<()>, _: DVec3, _: f32, _: Stream, _: &mut Vec<Miss<()>>) -> Option<Sample> {
+        None
+    }
+
+    fn occluded(&self, _: &Query<()>, from: DVec3, direction: DVec3) -> bool {
+        let t = (self.0 - from.x) / direction.x;
+        t > 0.0 && t < 1.0
+    }
+}
+
+const OPEN: Wall = Wall(f64::INFINITY);
+
+fn limits() -> Limits {
+    Limits::new(&Params { resolution: 64, ..Params::default() }, 4.0)
+}
+
+fn record() -> Record {
+    Record {
+        position: DVec3::ZERO,
+        normal: DVec3::Z,
+        u: DVec3::X,
+        level: 0,
+        weight: 1.0,
+        radii: [0.5, 0.8],
+        gradient: [0.0; 2],
+        rotation: [0.0; 2],
+        corral: 0,
+        value: Rgb::ONE,
+    }
+}
+
+fn query(x: f64, y: f64, z: f64) -> Query<()> {
+    Query { position: DVec3::new(x, y, z), normal: DVec3::Z, shading: DVec3::Z, weight: 1.0, level: 0, origin: () }
+}
+
+fn answer(records: &[Record], wall: &Wall, query: &Query<()>) -> Option<Rgb> {
+    let mut store = Store::new(DVec3::splat(-2.0), 4.0);
+    for r in records {
+        assert!(store.insert(r, 0.2));
+    }
+    store.lookup(&limits(), wall, query).answer()
+}
+
+fn accepts(record: &Record, query: &Query<()>) -> bool {
+    answer(&[*record], &OPEN, query).is_some()
+}
+
+fn tilted(degrees: f64) -> DVec3 {
+    let (s, c) = degrees.to_radians().sin_cos();
+    DVec3::new(s, 0.0, c)
+}
+
+#[test]
+fn the_ellipse_bounds_the_reach() {
+    let r = record();
+    // Reach 0.1 along u, 0.16 along v; 0.1 off the plane, but only R₋a = 0.0125 behind it.
+    for (x, y, z, expected) in [
+        (0.099, 0.0, 0.0, true),
+        (0.101, 0.0, 0.0, false),
+        (0.0, -0.159, 0.0, true),
+        (0.0, 0.161, 0.0, false),
+        (0.08, 0.12, 0.0, false),
+        (0.0, 0.0, 0.099, true),
+        (0.0, 0.0, 0.101, false),
+        (0.0, 0.0, -0.0124, true),
+        (0.0, 0.0, -0.0126, false),
+    ] {
+        assert_eq!(accepts(&r, &query(x, y, z)), expected, "({x}, {y}, {z})");
+    }
+}
+
+#[test]
+fn normals_may_differ_by_the_angle_limit() {
+    for (weight, degrees, expected) in
+        [(1.0, 21.3, true), (1.0, 21.7, false), (0.5, 27.3, true), (0.5, 27.8, false), (0.01, 52.0, true)]
+    {
+        let q = Query { normal: tilted(degrees), shading: tilted(degrees), weight, ..query(0.0, 0.0, 0.0) };
+        assert_eq!(accepts(&record(), &q), expected, "{degrees}° at weight {weight}");
+    }
+    let back = Query { normal: DVec3::NEG_Z, shading: DVec3::NEG_Z, ..query(0.0, 0.0, 0.0) };
+    assert!(!accepts(&record(), &back));
+}
+
+#[test]
+fn levels_and_weights_decide() {
+    let at = |level, weight| Record { level, weight, ..record() };
+    let ask = |level, weight| Query { weight, level, ..query(0.0, 0.0, 0.0) };
+    assert!(accepts(&at(0, 1.0), &ask(2, 0.25)), "a lower level serves");
+    assert!(!accepts(&at(1, 0.5), &ask(0, 1.0)), "a deeper level does not");
+    assert!(accepts(&at(1, 0.5), &ask(1, 0.55)));
+    assert!(!accepts(&at(1, 0.5), &ask(1, 0.56)), "the weight must be 0.9 of the query's");
+    assert!(accepts(&at(1, 0.01), &ask(2, 0.9)), "but not on lower levels");
+}
+
+#[test]
+fn weights_are_products_of_hats() {
+    // Two records at the ends: at 0.03 from one and 0.06 from the other along u the weights are 0.7 and 0.4.
+    let a = Record { value: Rgb::new(1.0, 0.0, 2.0), ..record() };
+    let b = Record { position: DVec3::new(0.09, 0.0, 0.0), value: Rgb::new(0.0, 1.0, 4.0), ..record() };
+    let v = answer(&[a, b], &OPEN, &query(0.03, 0.0, 0.0)).unwrap();
+    let expected = Rgb::new(0.7, 0.4, 3.0) / 1.1;
+    assert!((v - expected).abs().max_element() < 1e-5, "{v}");
+    // Angle: half of the limit gives half the weight.
+    let half = 0.5 * limits().max_angle;
+    let n = tilted(2.0 * (half / 2.0).asin().to_degrees());
+    let tilted = Record { normal: n, u: DVec3::Y, value: Rgb::new(0.0, 1.0, 0.0), ..record() };
+    let v = answer(&[a, tilted], &OPEN, &query(0.0, 0.0, 0.0)).unwrap();
+    assert!((v.x / v.y - 2.0).abs() < 1e-4, "{v}");
+}
+
+#[test]
+fn extrapolation_follows_gradients_and_is_limited() {
+    let value = |r: Record, q: &Query<()>| answer(&[r], &OPEN, q).map(|v| v.x);
+    let near = |got: Option<f32>, expected: f32| {
+        assert!(got.is_some_and(|v| (v - expected).abs() < 1e-5), "{got:?} instead of {expected}");
+    };
+    near(value(Record { gradient: [2.0, -1.0], ..record() }, &query(0.05, 0.1, 0.0)), 1.0);
+    near(value(Record { gradient: [2.0, 1.0], ..record() }, &query(0.05, 0.1, 0.0)), 1.2);
+    near(value(Record { gradient: [1000.0, 0.0], ..record() }, &query(0.05, 0.0, 0.0)), 20.0);
+    assert_eq!(value(Record { gradient: [-1000.0, 0.0], ..record() }, &query(0.05, 0.0, 0.0)), None);
+    // At the record's own place even the steepest extrapolation is better than another record.
+    near(value(Record { gradient: [-1e6, 0.0], ..record() }, &query(0.001, 0.0, 0.0)), 0.05);
+    // Turning towards +x means turning about +y = v.
+    let bump = tilted(10.0);
+    let q = Query { shading: bump, ..query(0.0, 0.0, 0.0) };
+    near(value(Record { rotation: [0.0, 1.0], ..record() }, &q), 1.0 + 10f32.to_radians().sin());
+}
+
+#[test]
+fn the_corral_is_probed_in_its_azimuths_only() {
+    let fenced = Record { corral: 0b11 | 1 << 31, ..record() };
+    let ask = |x: f64, y: f64, wall| answer(&[fenced], &Wall(wall), &query(x, y, 0.0)).is_some();
+    assert!(ask(0.09, 0.0, 5.0), "a flagged azimuth without an occluder");
+    assert!(!ask(0.09, 0.0, 0.05), "a flagged azimuth with a wall between");
+    assert!(ask(-0.09, 0.0, -0.05), "an azimuth without flag");
+    assert!(ask(0.0, 0.0, 0.05) && ask(1e-6, 0.0, 5e-7), "the record's own place");
+}
+
+#[test]
+fn positions_outside_the_cube_are_found() {
+    let outside = DVec3::new(2.5, -7.0, 0.3);
+    let r = Record { position: outside, ..record() };
+    let q = Query { position: outside + DVec3::new(0.02, 0.05, 0.0), ..query(0.0, 0.0, 0.0) };
+    assert!(accepts(&r, &q));
+}
+
+#[test]
+fn every_record_in_reach_is_found() {
+    // Records of many radii, compared with a search through all of them. Without early-out: tolerance × cell > R₋ fails
+    // for the smallest cells only, so the limits are widened until it never holds.
+    let wide = Limits { min_radius: 4.0, ..limits() };
+    let mut store = Store::new(DVec3::splat(-2.0), 4.0);
+    let number = |k: u32, tag| Stream::new(k, tag).one();
+    let records: Vec<Record> = (0..3000)
+        .map(|k| {
+            let p = DVec3::new(number(k, 1), number(k, 2), number(k, 3)) * 4.0 - 2.0;
+            let radius = 0.02f32 * 100f32.powf(number(k, 4) as f32);
+            let level = (number(k, 5) * 3.0) as u8;
+            Record {
+                position: p,
+                radii: [radius, radius],
+                level,
+                weight: 0.5f32.powi(i32::from(level)),
+                value: Rgb::splat(k as f32),
+                ..record()
+            }
+        })
+        .collect();
+    for r in &records {
+        assert!(store.insert(r, 0.2));
+    }
+    let mut answered = 0;
+    for k in 0..2000 {
+        let p = DVec3::new(number(k, 11), number(k, 12), number(k, 13)) * 4.0 - 2.0;
+        let q =
+            Query { position: p, level: (k % 3) as u8, weight: 0.5f32.powi((k % 3) as i32), ..query(0.0, 0.0, 0.0) };
+        let (mut weight, mut sum) = (0.0, 0.0);
+        for r in records.iter().filter(|r| r.level <= q.level) {
+            let distance = (q.position - r.position).length() / f64::from(r.radii[0]);
+            if distance < 0.2 && (q.position - r.position).z > -4.0 * 0.2 {
+                weight += 1.0 - distance / 0.2;
+                sum += (1.0 - distance / 0.2) * f64::from(r.value.x);
+            }
+        }
+        let found = store.lookup(&wide, &OPEN, &q).answer();
+        answered += usize::from(found.is_some());
+        match found {
+            Some(v) => {
+                let expected = sum / weight;
+                assert!((f64::from(v.x) - expected).abs() < 1e-2 * (1.0 + expected), "{v} instead of {expected}");
+            }
+            None => assert!(weight < 1e-5, "{weight}"),
+        }
+    }
+    assert!(answered > 500, "{answered}");
+}

@@ -1,0 +1,60 @@
+//! The serial lazy cache: each question is answered before the next is asked, as Radiance does.
+
+use super::room::Room;
+use crate::fill::key;
+use crate::finish::{Cell, Outcome, finish};
+use crate::hemisphere::Hemisphere;
+use crate::params::Params;
+use crate::supersample::{allocate, budget};
+use crate::{Cache, Query};
+use ambit_base::{Colour, Rgb, Stream};
+
+/// Answers a question, computing records on the way; counts the samples of each level.
+pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &mut [u64]) -> Rgb {
+    if cache.ends_at(query.level) {
+        return cache.fallback();
+    }
+    if let Some(value) = cache.lookup(room, query) {
+        return value;
+    }
+    let params = *cache.params();
+    let weight = Params::record_weight(query.level, query.weight);
+    let stream = Stream::new(0, key(query, params.seed));
+    let plan = Hemisphere::new(&params, weight, 1.0, query.normal, stream, true).expect("there are divisions");
+    let mut look = |cache: &mut Cache, direction, number| {
+        let (mut sample, question) = room.look(query, direction, plan.child_weight(), plan.stream(number));
+        samples[usize::from(query.level)] += 1;
+        if let Some(miss) = question {
+            sample.radiance += miss.coefficient * ask(cache, room, &miss.query, samples);
+        }
+        sample
+    };
+    let mut cells: Vec<Cell> = (0..plan.len())
+        .map(|k| {
+            let s = look(cache, plan.direction(k), k);
+            Cell { radiance: s.radiance, distance: s.distance, nearness: 1.0 / s.distance }
+        })
+        .collect();
+    let brightness: Vec<f32> = cells.iter().map(|c| c.radiance.brightness()).collect();
+    let budget = budget(params.super_samples, weight, plan.side());
+    let counts = allocate(plan.side(), &brightness, budget, |c| plan.share(c));
+    let mut number = plan.len();
+    for (cell, &count) in counts.iter().enumerate() {
+        let mut sum = cells[cell].radiance;
+        for k in 0..count {
+            let s = look(cache, plan.frame().to_world(plan.extra_local(cell, k)), number);
+            number += 1;
+            sum += s.radiance;
+            cells[cell].nearness = cells[cell].nearness.max(1.0 / s.distance);
+        }
+        cells[cell].radiance = sum / (count + 1) as f32;
+    }
+    match finish(&cache.limits, query, &plan, &cells) {
+        Outcome::Record(record, value) => {
+            cache.insert(record);
+            value
+        }
+        Outcome::Once(value) => value,
+        Outcome::Nothing => cache.fallback(),
+    }
+}
