@@ -142,9 +142,29 @@ pub enum AuxiliaryProblem {
     /// A data file ends before its last value.
     #[error("unexpected EOF in data file \"{0}\"")]
     DataEnds(String),
-    /// A malformed glyph in a font file.
-    #[error("bad font file \"{0}\": {1}")]
-    Font(String, &'static str),
+    /// A malformed font file.
+    #[error("{0} in font file \"{1}\"")]
+    Font(FontProblem, String),
+}
+
+/// What is wrong in a font file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FontProblem {
+    /// Something other than a number.
+    #[error("non-integer")]
+    NotInteger,
+    /// A character code outside 1 … 255.
+    #[error("illegal character ({0})")]
+    Character(i32),
+    /// A second glyph for a character.
+    #[error("duplicate character ({0})")]
+    Duplicate(u8),
+    /// A missing or impossible number of vertices.
+    #[error("bad # vertices for character ({0})")]
+    VertexCount(u8),
+    /// A missing coordinate, or one outside 0 … 255.
+    #[error("bad vertex for character ({0})")]
+    Vertex(u8),
 }
 
 /// What is wrong with the arguments of a primitive.
@@ -169,9 +189,6 @@ pub enum Problem {
     /// Wrong count of strings, in the words of some function types.
     #[error("too few string arguments")]
     TooFewStrings,
-    /// `specfile` takes one string and nothing else.
-    #[error("must have single argument")]
-    SingleString,
     /// Trailing words that form no transform.
     #[error("bad transform")]
     BadTransform,
@@ -214,14 +231,5 @@ impl Error {
             ErrorKind::TooLarge { .. } => ErrorClass::Internal,
             _ => ErrorClass::User,
         }
-    }
-}
-
-/// The system's words for an I/O error, without the error number that Rust appends.
-pub(crate) fn reason(error: &std::io::Error) -> String {
-    let text = error.to_string();
-    match text.find(" (os error") {
-        Some(end) => text[..end].to_owned(),
-        None => text,
     }
 }

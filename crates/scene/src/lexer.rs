@@ -118,6 +118,13 @@ impl<'a> Lexer<'a> {
     /// A real number filling the next word.
     #[inline]
     pub(crate) fn real(&mut self) -> Option<f64> {
+        self.skip_white();
+        let rest = &self.bytes[self.position..];
+        if let Some((value, length)) = short_decimal(rest) {
+            self.word_start = self.position;
+            self.position += length;
+            return Some(value);
+        }
         parse_real(&self.word()?.bytes)
     }
 
@@ -156,6 +163,44 @@ impl<'a> Lexer<'a> {
         }
         text
     }
+}
+
+/// The number at the start of `bytes` and its length, if it is one of the common kind: no exponent, few digits, white
+/// space after it. An integer below 2⁵³ divided by a power of ten up to 10²² is correctly rounded, both being exact
+/// (Clinger 1990), so this equals what [`parse_real`] gives, in a third of the time.
+#[inline]
+fn short_decimal(bytes: &[u8]) -> Option<(f64, usize)> {
+    /// As many digits as always fit 2⁵³.
+    const MAX_DIGITS: usize = 15;
+    const POWERS: [f64; MAX_DIGITS + 1] =
+        [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+    let negative = *bytes.first()? == b'-';
+    let start = usize::from(negative);
+    let mut mantissa = 0u64;
+    let mut point = None;
+    let mut at = start;
+    loop {
+        // The end of the text is left to the slow path.
+        let byte = *bytes.get(at)?;
+        let digit = byte.wrapping_sub(b'0');
+        if digit < 10 {
+            mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        } else if byte == b'.' && point.is_none() {
+            point = Some(at);
+        } else if is_white(byte) {
+            break;
+        } else {
+            return None;
+        }
+        at += 1;
+    }
+    let digits = at - start - usize::from(point.is_some());
+    if digits == 0 || digits > MAX_DIGITS {
+        return None;
+    }
+    let decimals = point.map_or(0, |p| at - p - 1);
+    let value = mantissa as f64 / POWERS[decimals];
+    Some((if negative { -value } else { value }, at))
 }
 
 /// `[+-]? (digit+ [. digit*] | . digit+) ([eE] [+-]? digit+)?`, after optional white space (that only quotes let in).

@@ -1,6 +1,7 @@
 //! Radiance scene text to typed records: the lexer, the reader (primitives, commands, aliases), the table of types and
 //! the surfaces' geometry.
 
+mod arguments;
 mod command;
 mod error;
 mod kind;
@@ -10,8 +11,9 @@ mod object;
 mod reader;
 mod surface;
 
+pub use arguments::{Arguments, RealCount};
 pub use command::{CommandOutput, NoCommands, Runner, Shell};
-pub use error::{AuxiliaryProblem, Error, ErrorClass, ErrorKind, Problem};
+pub use error::{AuxiliaryProblem, Error, ErrorClass, ErrorKind, FontProblem, Problem};
 pub use kind::{Class, KINDS, Kind};
 pub use object::{NewObject, Object, ObjectId, Scene, VOID};
 pub use reader::Reader;

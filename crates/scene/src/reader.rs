@@ -1,10 +1,10 @@
 //! Scene text to primitives: modifiers by latest definition, aliases, commands in place (scene.md 2 to 4).
 
 use crate::command::Runner;
-use crate::error::reason;
 use crate::lexer::Lexer;
 use crate::{Error, ErrorKind, Kind, NewObject, ObjectId, Scene, VOID};
 use ambit_base::{Location, Notify};
+use ambit_file::os_text;
 use std::io::Read;
 use std::path::Path;
 
@@ -62,7 +62,7 @@ impl<'a> Reader<'a> {
             Ok(bytes) => bytes,
             Err(e) if e.kind() == std::io::ErrorKind::IsADirectory => Vec::new(),
             Err(e) => {
-                let kind = ErrorKind::CannotOpen { file: name.clone().into_owned(), reason: reason(&e) };
+                let kind = ErrorKind::CannotOpen { file: name.clone().into_owned(), reason: os_text(&e) };
                 return Err(Error::new(kind, whole(&name)));
             }
         };
@@ -73,7 +73,7 @@ impl<'a> Reader<'a> {
     pub fn read_stream(&mut self, name: &str, mut stream: impl Read) -> Result<(), Error> {
         let mut bytes = Vec::new();
         stream.read_to_end(&mut bytes).map_err(|e| {
-            Error::new(ErrorKind::ReadFailed { file: name.to_owned(), reason: reason(&e) }, whole(name))
+            Error::new(ErrorKind::ReadFailed { file: name.to_owned(), reason: os_text(&e) }, whole(name))
         })?;
         self.read_bytes(name, &bytes)
     }
@@ -96,7 +96,7 @@ impl<'a> Reader<'a> {
         }
         let output = match self.runner.run(command.strip_prefix(b"!").unwrap_or(command)) {
             Ok(output) => output,
-            Err(e) => return refuse(reason(&e)),
+            Err(e) => return refuse(os_text(&e)),
         };
         self.depth += 1;
         let parsed = self.parse(&name, &output.text);
