@@ -21,6 +21,7 @@ mod average;
 mod cache;
 mod codec;
 mod corral;
+mod file;
 mod fill;
 mod finish;
 mod gather;
@@ -42,6 +43,7 @@ mod tilt;
 
 pub use cache::{Cache, Statistics};
 pub use codec::{Layout, RECORD_BYTES};
+pub use file::{AmbientFile, Contents, FORMAT, FileError, Opened, scan};
 pub use hemisphere::Hemisphere;
 pub use params::{ASSUMED_REFLECTANCE, Limits, Params};
 pub use record::Record;

@@ -1,0 +1,16 @@
+//! The ambient file: records shared between runs and between programs that run at the same time.
+//!
+//! A text header, a magic number of two bytes, then records of 67 bytes up to the end of the file. Everybody who writes
+//! holds an exclusive fcntl lock on the whole file, which Radiance's programs see and respect; whoever reads holds a
+//! shared one. Whole records are appended in one call under the lock, after reading what others appended; an incomplete
+//! record at the end is what a killed program left, and is cut off under the lock before anything is written.
+
+mod error;
+mod scan;
+mod share;
+#[cfg(test)]
+mod tests;
+
+pub use error::FileError;
+pub use scan::{Contents, FORMAT, scan};
+pub use share::{AmbientFile, Opened};
