@@ -1,0 +1,179 @@
+//! What may be wrong with an octree or mesh file, or with what is to go into one.
+
+use crate::BuildError;
+use ambit_scene::ErrorClass;
+use std::io;
+
+/// An octree or mesh that can not be read, built or written. The wording is that of Radiance.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The operating system refused to open or read a file, or to run a command.
+    #[error("{action} \"{name}\": {}", system_words(.source))]
+    Open {
+        /// What was tried, as in `cannot open octree file`.
+        action: &'static str,
+        /// The file or command as the user named it.
+        name: String,
+        /// Why it failed.
+        source: io::Error,
+    },
+    /// A file on the search path does not exist.
+    #[error("cannot find {what} file \"{name}\": No such file or directory")]
+    NotFound {
+        /// `octree` or `mesh`.
+        what: &'static str,
+        /// The name that was looked for.
+        name: String,
+    },
+    /// The contents of a file are not what they should be.
+    #[error("({name}): {problem}")]
+    Content {
+        /// The file or command as the user named it.
+        name: String,
+        /// What is wrong.
+        problem: Problem,
+    },
+    /// A frozen octree or a mesh ends within an object.
+    #[error("unexpected EOF in getobj")]
+    FrozenEnd,
+    /// A frozen object has a type that nobody knows.
+    #[error("reference to unknown type")]
+    UnknownType,
+    /// The scene or one of its objects.
+    #[error(transparent)]
+    Scene(#[from] ambit_scene::Error),
+    /// An instance or mesh with arguments that make no sense.
+    #[error("{problem} for {primitive}")]
+    Volume {
+        /// What is wrong.
+        problem: &'static str,
+        /// Type and identifier.
+        primitive: String,
+    },
+    /// The tree could not be built.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// Some surface is outside the cube that was asked for.
+    #[error("boundary does not encompass scene")]
+    Outside,
+    /// An object has more arguments than a frozen octree can count.
+    #[error("too many arguments to freeze {primitive} (at most 32767)")]
+    Unfreezable {
+        /// Type and identifier.
+        primitive: String,
+    },
+    /// The octree could not be written.
+    #[error("output error in writeoct: {}", system_words(.0))]
+    Write(#[source] io::Error),
+}
+
+/// What is wrong with the contents of a file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Problem {
+    /// The header is no header, or says that the file is something else.
+    #[error("not an octree")]
+    NotAnOctree,
+    /// Not the number every octree begins with.
+    #[error("incompatible octree format")]
+    IncompatibleOctree,
+    /// The file ends too early.
+    #[error("truncated octree")]
+    TruncatedOctree,
+    /// A node is none of the three kinds, or a cube is not finite.
+    #[error("damaged octree")]
+    DamagedOctree,
+    /// A leaf with more objects than one can have.
+    #[error("bad set in getfullnode")]
+    BadSet,
+    /// The scene files have changed.
+    #[error("bad object count; octree stale?")]
+    BadCount,
+    /// The scene files have changed.
+    #[error("modifier in tree; octree stale?")]
+    ModifierInTree,
+    /// The tree names an object that does not exist.
+    #[error("tree refers to object {object} of {count}; octree damaged?")]
+    StrayObject {
+        /// Number in the tree, from 0.
+        object: u32,
+        /// Number of objects in the file.
+        count: usize,
+    },
+    /// A frozen object is modified by something that is not an earlier modifier.
+    #[error("bad modifier {modifier} for {primitive}; expected an earlier modifier")]
+    BadModifier {
+        /// Number of the modifier in the file.
+        modifier: i64,
+        /// Type and identifier of the object.
+        primitive: String,
+    },
+    /// A frozen object with a negative number of arguments.
+    #[error("negative argument count for {primitive}")]
+    NegativeCount {
+        /// Type and identifier of the object.
+        primitive: String,
+    },
+    /// More objects than can be numbered.
+    #[error("too many objects")]
+    TooManyObjects,
+    /// Not the number every mesh begins with.
+    #[error("incompatible mesh format")]
+    IncompatibleMesh,
+    /// The file ends too early.
+    #[error("truncated mesh file")]
+    TruncatedMesh,
+    /// A node is none of the three kinds.
+    #[error("damaged mesh octree")]
+    DamagedMesh,
+    /// The cube has no size.
+    #[error("illegal octree bounds in mesh")]
+    MeshBounds,
+    /// Texture coordinates without a range.
+    #[error("unreferenced uv coordinates")]
+    UnreferencedUv,
+    /// Vertices without positions, or with parts nobody knows.
+    #[error("bad patch flags")]
+    PatchFlags,
+    /// A count out of range.
+    #[error("bad number of {0}")]
+    PatchCount(&'static str),
+    /// An index out of range, in a triangle of the kind given first.
+    #[error("bad {0} triangle {1}")]
+    Triangle(&'static str, &'static str),
+    /// A surface among the materials of a mesh.
+    #[error("non-modifier in mesh ({0})")]
+    NonModifier(String),
+    /// More vertices than can be numbered.
+    #[error("mesh too large")]
+    MeshTooLarge,
+}
+
+impl Problem {
+    /// The problem of a file.
+    pub(crate) fn of(self, name: &str) -> Error {
+        Error::Content { name: name.to_owned(), problem: self }
+    }
+}
+
+impl Error {
+    /// Whose fault it is, which decides on class word and exit status.
+    pub fn class(&self) -> ErrorClass {
+        match self {
+            Self::Open { .. } | Self::NotFound { .. } | Self::FrozenEnd | Self::Write(_) => ErrorClass::System,
+            Self::Build(BuildError::SetOverflow { .. }) => ErrorClass::Internal,
+            Self::Scene(e) => e.class(),
+            _ => ErrorClass::User,
+        }
+    }
+}
+
+/// The system's words for an error, without the number that the standard library appends.
+fn system_words(e: &io::Error) -> String {
+    let text = e.to_string();
+    match text.find(" (os error ") {
+        Some(end) => text[..end].to_owned(),
+        None => text,
+    }
+}
