@@ -250,11 +250,10 @@ impl Builder<'_> {
     /// Decides between leaf and branch for a cube without children, as insertion one by one would.
     fn fate(&self, cube: &Cube, present: &[ObjectId], arrivals: &[u32]) -> Result<Fate, BuildError> {
         let half = cube.edge * 0.5;
-        let mut count = present.len();
         for (i, &arrival) in arrivals.iter().enumerate() {
+            let count = present.len() + i;
             let smallest = if count == MOST_IN_SET { self.smallest / 256.0 } else { self.smallest };
-            let joins =
-                count == 0 || arrival & INSIDE != 0 || (count as i64) < self.limits.objects || half < smallest;
+            let joins = count == 0 || arrival & INSIDE != 0 || (count as i64) < self.limits.objects || half < smallest;
             if !joins {
                 return Ok(Fate::Divide(self.order(cube, present, arrivals, i)));
             }
@@ -262,7 +261,6 @@ impl Builder<'_> {
                 let name = self.scene.name(arrival & !INSIDE).into_owned();
                 return Err(BuildError::SetOverflow { name });
             }
-            count += 1;
         }
         Ok(Fate::Leaf)
     }

@@ -6,7 +6,7 @@ use crate::error::Problem;
 use ambit_base::Notify;
 use ambit_file::{Cursor, PortableWrite};
 use ambit_scene::{KINDS, Kind, NewObject, ObjectId, Scene, VOID};
-use std::io::Write;
+use std::io::{self, Write};
 use std::ops::Range;
 
 /// What stands in place of a type after the last object.
@@ -50,7 +50,7 @@ pub(crate) fn read(
         let modifier = input.int(width).ok_or(Error::FrozenEnd)?;
         let identifier = input.string().ok_or(Error::FrozenEnd)?;
         let primitive = || format!("{} \"{}\"", kind.name(), String::from_utf8_lossy(identifier));
-        let mut count = |input: &mut Cursor<'_>| {
+        let count = |input: &mut Cursor<'_>| {
             let n = input.int(2).ok_or(Error::FrozenEnd)?;
             usize::try_from(n).map_err(|_| Problem::NegativeCount { primitive: primitive() }.of(name))
         };
@@ -72,38 +72,39 @@ pub(crate) fn read(
                 .filter(|&m| scene.object(m).kind.is_modifier())
                 .ok_or_else(|| Problem::BadModifier { modifier, primitive: primitive() }.of(name))?
         };
-        if scene.len() >= crate::MOST_OBJECTS {
+        let new = NewObject { kind, modifier, name: identifier, strings: &strings, reals: &reals, file, line: 0 };
+        if scene.len() >= crate::MOST_OBJECTS || scene.full(&new).is_some() {
             return Err(Problem::TooManyObjects.of(name));
         }
-        scene.push(NewObject { kind, modifier, name: identifier, strings: &strings, reals: &reals, file, line: 0 });
+        scene.push(new);
+    }
+}
+
+/// Makes sure that a run of objects can be written.
+pub(crate) fn check(scene: &Scene, mut objects: Range<ObjectId>) -> Result<(), Error> {
+    match objects.find(|&id| scene.string_count(id).max(scene.reals(id).len()) > MOST_ARGUMENTS) {
+        Some(id) => Err(Error::Unfreezable { primitive: scene.describe(id) }),
+        None => Ok(()),
     }
 }
 
 /// Writes the section for a run of objects; numbers are four bytes long and relative to the first.
-pub(crate) fn write(out: &mut impl Write, scene: &Scene, objects: Range<ObjectId>) -> Result<(), Error> {
+pub(crate) fn write(out: &mut impl Write, scene: &Scene, objects: Range<ObjectId>) -> io::Result<()> {
     let first = objects.start;
     for (_, name, _) in KINDS {
-        out.write_string(name.as_bytes()).map_err(Error::Write)?;
+        out.write_string(name.as_bytes())?;
     }
-    out.write_string(b"").map_err(Error::Write)?;
+    out.write_string(b"")?;
     for id in objects {
         let object = scene.object(id);
         let (strings, reals) = (scene.string_count(id), scene.reals(id));
-        if strings > MOST_ARGUMENTS || reals.len() > MOST_ARGUMENTS {
-            return Err(Error::Unfreezable { primitive: scene.describe(id) });
-        }
-        let mut put = || {
-            out.write_int(1, object.kind as i64)?;
-            out.write_int(4, if object.modifier == VOID { -1 } else { (object.modifier - first) as i64 })?;
-            out.write_string(scene.name_bytes(id))?;
-            out.write_int(2, strings as i64)?;
-            for i in 0..strings {
-                out.write_string(scene.string_bytes(id, i).unwrap_or_default())?;
-            }
-            out.write_int(2, reals.len() as i64)?;
-            reals.iter().try_for_each(|&x| out.write_float(x))
-        };
-        put().map_err(Error::Write)?;
+        out.write_int(1, object.kind as i64)?;
+        out.write_int(4, if object.modifier == VOID { -1 } else { (object.modifier - first) as i64 })?;
+        out.write_string(scene.name_bytes(id))?;
+        out.write_int(2, strings as i64)?;
+        scene.strings_bytes(id).try_for_each(|s| out.write_string(s))?;
+        out.write_int(2, reals.len() as i64)?;
+        reals.iter().try_for_each(|&x| out.write_float(x))?;
     }
-    out.write_int(1, END as i64).map_err(Error::Write)
+    out.write_int(1, END as i64)
 }

@@ -1,8 +1,8 @@
 //! What the build needs to know of each object: four bytes, which lead to the coordinates in the scene's own arrays for
 //! polygons and to a small table for everything else.
 
-use crate::overlap::{ConeFamily, PolygonTest, Relation, Volume, sphere_meets};
 use crate::Cube;
+use crate::overlap::{ConeFamily, PolygonTest, Relation, Volume, sphere_meets};
 use ambit_base::DVec3;
 use ambit_scene::{Bounds, Facet, ObjectId, Scene, Shape};
 
@@ -120,11 +120,7 @@ impl Geometry {
     /// Numbers of the objects that can be in a cube, in order.
     pub fn placed(&self) -> impl Iterator<Item = ObjectId> {
         let first = self.first;
-        self.entries
-            .iter()
-            .enumerate()
-            .filter(|(_, e)| **e != Entry::NOWHERE)
-            .map(move |(i, _)| first + i as ObjectId)
+        self.entries.iter().enumerate().filter(|(_, e)| **e != Entry::NOWHERE).map(move |(i, _)| first + i as ObjectId)
     }
 
     fn entry(&self, id: ObjectId) -> Entry {

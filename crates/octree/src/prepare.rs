@@ -53,7 +53,9 @@ pub fn prepare(
             }
         }
     }
-    later.iter().for_each(|text| notify.warn(text));
+    for text in &later {
+        notify.warn(text);
+    }
     Ok(geometry)
 }
 

@@ -9,7 +9,7 @@ use crate::tree::{self, Tree};
 use crate::{Cube, Error, frozen};
 use ambit_base::Notify;
 use ambit_file::{Cursor, Header};
-use ambit_scene::{ObjectId, Scene};
+use ambit_scene::{ObjectId, Reader, Runner, Scene};
 use std::io::BufRead;
 
 /// The value of `FORMAT=` in octrees.
@@ -39,20 +39,19 @@ impl Loaded {
     }
 }
 
-/// Reads scene files (and commands) in the order of their names and appends what they define to a scene.
-pub type ReadFiles<'a> = dyn FnMut(&[String], &mut Scene) -> Result<(), ambit_scene::Error> + 'a;
-
 /// Reads an octree for its objects. The tree is checked, and not kept: for those who sort the surfaces anew.
 ///
-/// `name` is what errors call the file: its path, `standard input`, or the `!command` it came from.
+/// `name` is what errors call the file: its path, `standard input`, or the `!command` it came from. Scene files are
+/// read as the octree names them, relative to the working directory, their commands run by `runner`. After an error
+/// the scene is left with what was read before it.
 pub fn read_scene(
     bytes: &[u8],
     name: &str,
     scene: &mut Scene,
-    read_files: &mut ReadFiles<'_>,
+    runner: &mut dyn Runner,
     notify: &dyn Notify,
 ) -> Result<Loaded, Error> {
-    read(bytes, name, scene, read_files, notify, None)
+    read(bytes, name, scene, runner, notify, None)
 }
 
 /// Reads an octree with its tree, whose object numbers are those of the scene.
@@ -60,11 +59,11 @@ pub fn read_octree(
     bytes: &[u8],
     name: &str,
     scene: &mut Scene,
-    read_files: &mut ReadFiles<'_>,
+    runner: &mut dyn Runner,
     notify: &dyn Notify,
 ) -> Result<(Loaded, Tree), Error> {
     let mut words = Vec::new();
-    let loaded = read(bytes, name, scene, read_files, notify, Some(&mut words))?;
+    let loaded = read(bytes, name, scene, runner, notify, Some(&mut words))?;
     Ok((loaded, Tree { words }))
 }
 
@@ -90,7 +89,7 @@ fn read(
     bytes: &[u8],
     name: &str,
     scene: &mut Scene,
-    read_files: &mut ReadFiles<'_>,
+    runner: &mut dyn Runner,
     notify: &dyn Notify,
     mut keep: Option<&mut Vec<u32>>,
 ) -> Result<Loaded, Error> {
@@ -134,7 +133,8 @@ fn read(
     if frozen {
         frozen::read(&mut input, width, name, scene, notify)?;
     } else {
-        read_files(&scene_files, scene)?;
+        let mut reader = Reader::new(scene, notify, runner);
+        scene_files.iter().try_for_each(|file| reader.read(file))?;
         if (scene.len() - first) as i64 != stored_count {
             return Err(wrong(Problem::BadCount));
         }

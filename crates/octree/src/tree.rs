@@ -70,12 +70,6 @@ pub(crate) fn length(node: Node<'_>) -> usize {
     }
 }
 
-/// Appends a leaf.
-pub(crate) fn push_leaf(words: &mut Vec<u32>, set: &[ObjectId]) {
-    words.push(set.len() as u32);
-    words.extend_from_slice(set);
-}
-
 /// Replaces the branch at word `at`, which is the last node that was written and has all its children, by one leaf if
 /// the children are equal leaves.
 pub(crate) fn merge_equal_children(words: &mut Vec<u32>, at: usize) {
@@ -95,6 +89,11 @@ pub(crate) fn merge_equal_children(words: &mut Vec<u32>, at: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn push_leaf(words: &mut Vec<u32>, set: &[ObjectId]) {
+        words.push(set.len() as u32);
+        words.extend_from_slice(set);
+    }
 
     #[test]
     fn equal_leaves_become_one() {

@@ -5,7 +5,7 @@ use crate::read::FORMAT;
 use crate::tree::{Node, Tree};
 use crate::{Cube, Error, frozen};
 use ambit_file::{Header, PortableWrite};
-use ambit_scene::{ObjectId, Scene};
+use ambit_scene::Scene;
 use std::io::{self, Write};
 
 /// Where readers find the objects.
@@ -32,9 +32,12 @@ pub fn write(
 ) -> Result<(), Error> {
     let count = match objects {
         Objects::InFiles { count, .. } => count,
-        Objects::Frozen(scene) => scene.len(),
+        Objects::Frozen(scene) => {
+            frozen::check(scene, scene.ids())?;
+            scene.len()
+        }
     };
-    let mut front = || {
+    let mut write_all = || {
         let mut header = header.clone();
         header.push(format!("FORMAT={FORMAT}"));
         header.write(out)?;
@@ -47,13 +50,13 @@ pub fn write(
         }
         out.write_string(b"")?;
         out.write_int(WIDTH, count as i64)?;
-        write_tree(out, tree)
+        write_tree(out, tree)?;
+        if let Objects::Frozen(scene) = objects {
+            frozen::write(out, scene, scene.ids())?;
+        }
+        out.flush()
     };
-    front().map_err(Error::Write)?;
-    if let Objects::Frozen(scene) = objects {
-        frozen::write(out, scene, 0..scene.len() as ObjectId)?;
-    }
-    out.flush().map_err(Error::Write)
+    write_all().map_err(Error::Write)
 }
 
 fn write_tree(out: &mut impl Write, tree: &Tree) -> io::Result<()> {

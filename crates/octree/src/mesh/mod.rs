@@ -5,7 +5,8 @@
 mod patch;
 mod read;
 
-pub use read::{read_cube, read_mesh};
+pub(crate) use read::read_cube;
+pub use read::read_mesh;
 
 use crate::Cube;
 use ambit_base::DVec3;

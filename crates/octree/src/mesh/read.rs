@@ -54,7 +54,7 @@ pub fn read_mesh(bytes: &[u8], name: &str, scene: &mut Scene, notify: &dyn Notif
 }
 
 /// The cube alone: all that is needed of a mesh to place it.
-pub fn read_cube(input: &mut impl BufRead, name: &str) -> Result<Cube, Error> {
+pub(crate) fn read_cube(input: &mut impl BufRead, name: &str) -> Result<Cube, Error> {
     let wrong = |p: Problem| p.of(name);
     Header::read(input, name).map_err(|_| wrong(Problem::IncompatibleMesh))?;
     checked_cube(MESH.front_cube(input)).map_err(wrong)
@@ -115,9 +115,10 @@ impl Mesh {
         self.materials.reserve_exact(triangles);
         for p in patches {
             let scale = self.cube.edge / STEPS;
-            self.vertices.extend(p.positions().map(|[x, y, z]| {
-                self.cube.origin + (DVec3::new(x as f64, y as f64, z as f64) + 0.5) * scale
-            }));
+            self.vertices.extend(
+                p.positions()
+                    .map(|[x, y, z]| self.cube.origin + (DVec3::new(x as f64, y as f64, z as f64) + 0.5) * scale),
+            );
             if self.normals.capacity() > 0 {
                 self.normals.extend(p.normals());
             }

@@ -1,8 +1,8 @@
 //! Cones, cylinders and rings against cubes: the generator of the surface that is nearest to the cube's centre is
 //! tried, and where that does not decide, the eight parts of the cube.
 
-use super::{AxisBox, ROOT_3};
 use super::polygon::normalised;
+use super::{AxisBox, ROOT_3};
 use ambit_base::{DVec3, EPSILON};
 
 /// The lateral surface between two circles on one axis; a ring has both in one plane.

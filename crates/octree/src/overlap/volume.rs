@@ -26,7 +26,9 @@ impl Volume {
     /// The box around the placed cube.
     pub fn bounds(&self) -> Bounds {
         let mut b = Bounds::EMPTY;
-        self.corners.iter().for_each(|&p| b.add(p));
+        for &p in &self.corners {
+            b.add(p);
+        }
         b
     }
 
