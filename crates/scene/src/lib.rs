@@ -3,18 +3,25 @@
 
 mod arguments;
 mod command;
+mod data;
 mod error;
+mod font;
 mod kind;
 mod lexer;
 mod names;
 mod object;
 mod reader;
 mod surface;
+mod text;
+mod tokens;
 
 pub use arguments::{Arguments, RealCount};
 pub use command::{CommandOutput, NoCommands, Runner, Shell};
+pub use data::{Axis, DataTable, MAX_DIMENSIONS};
 pub use error::{AuxiliaryProblem, Error, ErrorClass, ErrorKind, FontProblem, Problem};
+pub use font::{Font, GLYPH_SIZE, Glyph};
 pub use kind::{Class, KINDS, Kind};
 pub use object::{NewObject, Object, ObjectId, Scene, VOID};
 pub use reader::Reader;
 pub use surface::{Bounds, Complaint, Cone, Facet, Polygon, Ring, Shape, Source, Sphere, Warning};
+pub use text::TextBlock;
