@@ -10,6 +10,7 @@ mod kind;
 mod lexer;
 mod names;
 mod object;
+mod print;
 mod reader;
 mod surface;
 mod text;
