@@ -1,1 +1,37 @@
-//! See the crate description.
+//! The nearest hit of a ray, exactly, over millions of surfaces.
+//!
+//! A [`World`] holds what an octree holds: polygons, spheres, cones, rings, and instances of other worlds and of meshes.
+//! obvhs clusters their boxes; the tree becomes eight-wide nodes in f32, wide enough that nothing is lost by rounding;
+//! leaves decide in f64 by Radiance's rules (refused distances, tolerances, ties).
+//!
+//! | module | what it does |
+//! |---|---|
+//! | `ray` | questions and answers |
+//! | `polygon`, `facet`, `quadric`, `mesh` | hit tests |
+//! | `best` | which of several hits counts |
+//! | `bounds`, `frame`, `split`, `tree`, `node` | building |
+//! | `walk`, `simd`, `search` | walking |
+//! | `builder`, `world`, `item` | what is built and asked |
+
+mod best;
+mod bounds;
+mod builder;
+mod facet;
+mod frame;
+mod item;
+mod mesh;
+mod node;
+mod polygon;
+mod quadric;
+mod ray;
+mod search;
+mod simd;
+mod split;
+mod tree;
+mod walk;
+mod world;
+
+pub use builder::{BuildError, WorldBuilder};
+pub use mesh::{Mesh, MeshGeometry};
+pub use ray::{Hit, Opacity, Rank, Ray, Shadow};
+pub use world::World;
