@@ -1,8 +1,25 @@
 //! What light does: rays and their limits, sources and shadows, one material a file, patterns, and the rounds that fill
 //! the irradiance cache.
 
+mod antimatter;
+mod error;
+mod indirect;
+mod materials;
 mod options;
+mod patterns;
+mod prepare;
+mod ray;
+mod renderer;
 mod request;
+mod shade;
+mod sharing;
+mod sources;
+mod tracer;
+mod walk;
+mod work;
 
+pub use error::Error;
 pub use options::{Ambient, Direct, Limits, Medium, Options, Selection, Specular};
+pub use prepare::{Definition, Environment, Loaded, OctreeSource, load};
+pub use renderer::Renderer;
 pub use request::{Aim, Answer, Request};

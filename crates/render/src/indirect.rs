@@ -1,0 +1,74 @@
+//! Diffuse interreflection at one hit: ask the cache, defer what it cannot answer, or sample a hemisphere on the spot
+//! where nothing is cached (`-aa 0`).
+
+use crate::ray::{Kinds, Ray};
+use crate::tracer::Origin;
+use crate::walk::Walk;
+use ambit_ambient::{Answer, Hemisphere, Miss, Query, Tilt};
+use ambit_base::{DVec3, EPSILON, Rgb};
+
+/// Tag of a hemisphere's point set; the far side's is the next.
+const HEMISPHERE: u64 = 0xa0;
+
+impl Walk<'_> {
+    /// Adds `coefficient` × (irradiance/π) on the side of the surface that `shading` points to. `shading` is the
+    /// textured normal, or its negative for the far side.
+    pub(crate) fn ambient(&mut self, ray: &mut Ray<'_>, coefficient: Rgb, shading: DVec3) {
+        if coefficient.max_element() <= EPSILON as f32 {
+            return;
+        }
+        let facing = ray.facing_normal();
+        let transmitted = shading.dot(facing) < 0.0;
+        let normal = if transmitted { -facing } else { facing };
+        let modifier = ray.hit.as_ref().map(|h| h.modifier);
+        if !modifier.is_none_or(|m| self.tracer.scene.takes_part(m)) {
+            ray.value += coefficient * self.cache.fallback();
+            return;
+        }
+        let query = Query {
+            position: ray.point,
+            normal,
+            shading,
+            weight: ray.weight,
+            level: ray.depth,
+            origin: Origin::of(ray, transmitted),
+        };
+        match self.cache.ask(self.tracer, &query) {
+            Answer::Value(v) | Answer::Fallback(v) => ray.value += coefficient * v,
+            Answer::Miss => {
+                let k = ray.throughput * self.attenuation(ray) * coefficient;
+                self.misses.push(Miss { coefficient: k, query });
+            }
+            Answer::Uncached => self.hemisphere(ray, coefficient, normal, shading, transmitted),
+        }
+    }
+
+    /// Samples the hemisphere about `normal` by rays of this very path (irradiance caching off).
+    fn hemisphere(&mut self, ray: &mut Ray<'_>, coefficient: Rgb, normal: DVec3, shading: DVec3, transmitted: bool) {
+        let params = self.cache.params();
+        let stream = ray.stream.child(HEMISPHERE + u64::from(transmitted));
+        let Some(plan) = Hemisphere::new(params, ray.weight, coefficient.max_element(), normal, stream, false) else {
+            ray.value += coefficient * self.cache.fallback();
+            return;
+        };
+        let kind = if transmitted { Kinds::AMBIENT_TRANSMITTED } else { Kinds::AMBIENT_REFLECTED };
+        let k = coefficient / plan.len() as f32;
+        let mut sum = Rgb::ZERO;
+        let mut tilt = Tilt::default();
+        let mut alive = 0;
+        for cell in 0..plan.len() {
+            let Some(mut child) = self.child(ray, kind, plan.direction(cell), k, cell as u64) else { continue };
+            child.stream = plan.stream(cell);
+            self.evaluate(&mut child);
+            alive += 1;
+            let light = child.coefficient * child.value;
+            tilt.add(&plan, cell, light);
+            sum += light;
+        }
+        if alive == 0 {
+            ray.value += coefficient * self.cache.fallback();
+            return;
+        }
+        ray.value += sum * tilt.factor(&plan, shading);
+    }
+}

@@ -1,0 +1,88 @@
+//! glass: a thin pane with all internal reflections summed.
+
+use super::{Facing, Finish, mirror_direction};
+use crate::ray::{Kinds, Ray};
+use crate::walk::Walk;
+use ambit_base::{DVec3, EPSILON, Rgb};
+
+/// Arguments of glass.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Glass {
+    /// Transmissivity for one pass along the normal.
+    pub(crate) transmissivity: Rgb,
+    pub(crate) index: f64,
+}
+
+/// Transmissivities below this are raised to it, unless all are.
+const LEAST: f32 = 1e-15;
+
+/// Index of refraction where none is given.
+pub(crate) const WINDOW_INDEX: f64 = 1.52;
+
+impl Glass {
+    /// Transmitted and reflected fraction for a cosine of incidence, averaged over polarisations.
+    fn fractions(&self, c: f64) -> (Rgb, Rgb) {
+        let n = self.index;
+        let kappa = (1.0 - 1.0 / (n * n) + (c / n) * (c / n)).sqrt();
+        let r1 = ((c - n * kappa) / (c + n * kappa)).powi(2);
+        let r2 = ((1.0 / c - n / kappa) / (1.0 / c + n / kappa)).powi(2);
+        let one = |tau: f32| {
+            let x = f64::from(tau.max(LEAST)).powf(1.0 / kappa);
+            let (mut t, mut r) = (0.0, 0.0);
+            for rho in [r1, r2] {
+                let loop_sum = 1.0 - (rho * x).powi(2);
+                t += 0.5 * (1.0 - rho).powi(2) * x / loop_sum;
+                r += 0.5 * rho * (1.0 + (1.0 - 2.0 * rho) * x * x) / loop_sum;
+            }
+            (t as f32, r as f32)
+        };
+        let (x, y, z) = (one(self.transmissivity.x), one(self.transmissivity.y), one(self.transmissivity.z));
+        (Rgb::new(x.0, y.0, z.0), Rgb::new(x.1, y.1, z.1))
+    }
+}
+
+impl Walk<'_> {
+    pub(crate) fn glass(&mut self, ray: &mut Ray<'_>, m: &Glass, finish: Finish) -> bool {
+        if ray.cosine() <= 0.0 && !self.tracer.options.back_visible {
+            return false;
+        }
+        let facing = Facing::of(ray, finish.tilt, true);
+        ray.normal = facing.normal;
+        let (t, r) = m.fractions(facing.cosine.abs().max(EPSILON));
+        let straight = !facing.textured || ray.is_shadow() || ray.is_ambient();
+        if m.transmissivity.max_element() >= LEAST {
+            let direction = if straight || self.is_phong(ray) { ray.direction } else { refracted(ray, m, &facing) };
+            if let Some(mut child) = self.child(ray, Kinds::TRANSFERRED, direction, t * finish.pattern, 3) {
+                self.evaluate(&mut child);
+                let light = child.coefficient * child.value;
+                let beyond = child.effective_length();
+                ray.value += light;
+                if straight {
+                    ray.unmirrored_length = ray.distance + beyond;
+                }
+            }
+        }
+        if ray.is_shadow() {
+            return true;
+        }
+        if let Some(mut child) = self.child(ray, Kinds::REFLECTED, mirror_direction(ray.direction, &facing), r, 2) {
+            self.evaluate(&mut child);
+            let light = child.coefficient * child.value;
+            let beyond = child.effective_length();
+            ray.value += light;
+            ray.mirrored = light;
+            ray.mirrored_length = ray.distance;
+            if self.is_flat(ray) && (!facing.textured || ray.is_ambient()) {
+                ray.mirrored_length += beyond;
+            }
+        }
+        true
+    }
+}
+
+/// The direction of a ray that a pane of varying thickness deflects: d + 2(1 − n)p, if that still crosses it.
+fn refracted(ray: &Ray<'_>, m: &Glass, facing: &Facing) -> DVec3 {
+    let d = ray.direction;
+    let bent = (d + facing.tilt * (2.0 * (1.0 - m.index))).normalize_or(d);
+    if bent.dot(facing.geometric) < 0.0 { bent } else { d }
+}

@@ -1,0 +1,145 @@
+//! What light does at a surface, one material a file.
+
+mod dielectric;
+mod glass;
+mod light;
+mod mirror;
+mod normal;
+mod rough;
+
+pub(crate) use dielectric::Dielectric;
+pub(crate) use glass::{Glass, WINDOW_INDEX};
+pub(crate) use light::Light;
+pub(crate) use mirror::{Alternate, Mirror};
+pub(crate) use normal::{Normal, NormalKind};
+
+use crate::antimatter::Antimatter;
+use crate::ray::{Kinds, Ray};
+use crate::walk::Walk;
+use ambit_base::{DVec3, EPSILON, Rgb};
+use ambit_trace::Opacity;
+
+/// A compiled material.
+#[derive(Debug)]
+pub(crate) enum Material {
+    /// plastic, metal, trans.
+    Normal(Normal),
+    Glass(Glass),
+    /// dielectric, interface.
+    Dielectric(Dielectric),
+    Mirror(Mirror),
+    /// light, illum, glow, spotlight.
+    Light(Light),
+    Antimatter(Antimatter),
+}
+
+/// What the modifiers between a surface and its material have gathered.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Finish {
+    /// Product of the patterns.
+    pub(crate) pattern: Rgb,
+    /// Sum of the perturbations of the normal, world coordinates.
+    pub(crate) tilt: DVec3,
+}
+
+impl Material {
+    /// How surfaces of this material take part in ties between coincident surfaces.
+    pub(crate) fn opacity(&self) -> Opacity {
+        let transparent = match self {
+            Self::Normal(m) => m.kind == NormalKind::Trans,
+            Self::Glass(_) | Self::Dielectric(_) => true,
+            Self::Mirror(_) | Self::Light(_) | Self::Antimatter(_) => false,
+        };
+        if transparent { Opacity::Transparent } else { Opacity::Opaque }
+    }
+
+    /// True if it stops every shadow ray that is not aimed at it.
+    pub(crate) fn blocks(&self) -> bool {
+        match self {
+            Self::Normal(m) => m.kind != NormalKind::Trans,
+            Self::Light(m) => m.blocks(),
+            _ => false,
+        }
+    }
+
+    /// True if it changes the direction of shadow rays.
+    pub(crate) fn bends(&self) -> bool {
+        matches!(self, Self::Dielectric(_))
+    }
+
+    /// Lights and antimatter keep their meaning under the irradiance switch.
+    fn keeps_meaning(&self) -> bool {
+        matches!(self, Self::Light(_) | Self::Antimatter(_))
+    }
+}
+
+impl Walk<'_> {
+    /// Shades a ray at its hit; false if the material lets it pass unchanged.
+    pub(crate) fn material(&mut self, ray: &mut Ray<'_>, material: &Material, finish: Finish) -> bool {
+        if self.tracer.options.irradiance && ray.lineage.within(Kinds::STRAIGHT) && !material.keeps_meaning() {
+            if material.opacity() == Opacity::Transparent {
+                return false;
+            }
+            self.lambertian(ray);
+            return true;
+        }
+        match material {
+            Material::Normal(m) => self.normal(ray, m, finish),
+            Material::Glass(m) => self.glass(ray, m, finish),
+            Material::Dielectric(m) => self.dielectric(ray, m, finish),
+            Material::Mirror(m) => self.mirror(ray, m, finish),
+            Material::Light(m) => self.light(ray, m, finish),
+            Material::Antimatter(m) => self.antimatter(ray, m),
+        }
+    }
+}
+
+/// A hit as its material sees it: turned to the viewer and perturbed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Facing {
+    /// Geometric normal.
+    pub(crate) geometric: DVec3,
+    /// Shading normal.
+    pub(crate) normal: DVec3,
+    /// −d·`normal`, not clamped.
+    pub(crate) cosine: f64,
+    pub(crate) tilt: DVec3,
+    pub(crate) textured: bool,
+}
+
+/// Perturbations no longer than this (squared) leave a surface untextured.
+const FLAT_TILT: f64 = 1e-12;
+
+impl Facing {
+    /// The hit of `ray` with its normals; flipped to the viewer if `flip`.
+    pub(crate) fn of(ray: &Ray<'_>, tilt: DVec3, flip: bool) -> Self {
+        let hit = ray.hit.as_ref().expect("materials are asked at hits");
+        let side = if flip && hit.cosine < 0.0 { -1.0 } else { 1.0 };
+        let geometric = hit.normal * side;
+        let tilt = tilt * side;
+        let textured = tilt.length_squared() > FLAT_TILT;
+        let mut normal = geometric;
+        if textured {
+            let n = geometric + tilt;
+            if n.length_squared() > FLAT_TILT {
+                normal = n.normalize();
+            }
+            let c = -ray.direction.dot(normal);
+            if (c < 0.0) != (hit.cosine * side < 0.0) {
+                normal += ray.direction * (2.0 * c);
+            }
+        }
+        let cosine = -ray.direction.dot(normal);
+        Self { geometric, normal, cosine, tilt, textured }
+    }
+}
+
+/// d + 2 C N, about the geometric normal instead where the result would enter the surface.
+pub(crate) fn mirror_direction(d: DVec3, facing: &Facing) -> DVec3 {
+    let r = d + facing.normal * (2.0 * facing.cosine);
+    if facing.textured && r.dot(facing.geometric) <= EPSILON {
+        d - facing.geometric * (2.0 * d.dot(facing.geometric))
+    } else {
+        r
+    }
+}

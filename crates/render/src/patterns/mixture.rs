@@ -1,0 +1,117 @@
+//! Mixtures: two modifiers blended.
+
+use super::compiler::{Compiler, Functions};
+use crate::Error;
+use crate::materials::Finish;
+use crate::ray::Ray;
+use crate::walk::Walk;
+use ambit_base::{Colour, EPSILON};
+use ambit_scene::{Kind, ObjectId, Scene, VOID};
+
+/// A compiled mixture.
+#[derive(Debug)]
+pub(crate) struct Mixture {
+    /// The two sides; [`VOID`] is transparent.
+    pub(crate) sides: [ObjectId; 2],
+    id: ObjectId,
+    share: Share,
+}
+
+/// How the foreground's share is found.
+#[derive(Debug)]
+enum Share {
+    /// mixfunc.
+    Function(Functions),
+}
+
+impl Mixture {
+    pub(crate) fn compile(scene: &Scene, id: ObjectId, compiler: &mut Compiler<'_>) -> Result<Self, Error> {
+        let share = match scene.object(id).kind {
+            Kind::MixFunc => {
+                if scene.string_count(id) < 4 {
+                    return Err(Error::primitive(scene, id, "bad # arguments"));
+                }
+                Share::Function(compiler.functions(scene, id, &[2], 3)?)
+            }
+            _ => return Err(Error::unsupported(scene, id)),
+        };
+        let side = |i: usize| {
+            let name = scene.string_bytes(id, i).unwrap_or_default();
+            if name == b"void" {
+                return Ok(VOID);
+            }
+            scene.modifier_before(name, id).ok_or_else(|| {
+                let name = String::from_utf8_lossy(name);
+                Error::primitive(scene, id, &format!("undefined modifier \"{name}\""))
+            })
+        };
+        Ok(Self { sides: [side(0)?, side(1)?], id, share })
+    }
+}
+
+impl Walk<'_> {
+    /// Applies a mixture. Where a side has a material the hit is shaded and the answer is whether it was; otherwise
+    /// the sides' patterns and textures are blended into `finish` and there is no answer: the chain goes on.
+    pub(crate) fn mix(
+        &mut self,
+        ray: &mut Ray<'_>,
+        mixture: &Mixture,
+        next: ObjectId,
+        finish: &mut Finish,
+    ) -> Option<bool> {
+        let fore = match &mixture.share {
+            Share::Function(functions) => self.three(ray, functions)?[0].clamp(0.0, 1.0),
+        };
+        let shares = [fore, 1.0 - fore];
+        let scene = self.tracer.scene;
+        let solid = mixture.sides.iter().any(|&side| scene.modifiers.has_material(side));
+        if !solid {
+            let mut blend = Finish { pattern: finish.pattern * 0.0, tilt: finish.tilt * 0.0 };
+            for (&side, share) in mixture.sides.iter().zip(shares) {
+                if share > EPSILON {
+                    let mut own = *finish;
+                    if !self.gather(ray, side, &mut own) {
+                        return Some(true);
+                    }
+                    blend.pattern += own.pattern * share as f32;
+                    blend.tilt += own.tilt * share;
+                }
+            }
+            *finish = blend;
+            return None;
+        }
+        if next != VOID {
+            self.fail(Error::primitive(&scene.objects, mixture.id, "inappropriate modifier"));
+            return Some(true);
+        }
+        let whole = *ray;
+        let (mut most, mut most_mirrored) = (-1.0, -1.0);
+        for (&side, share) in mixture.sides.iter().zip(shares) {
+            if share <= EPSILON {
+                continue;
+            }
+            let k = share as f32;
+            let mut part = whole;
+            part.weight *= k;
+            part.throughput *= k;
+            if !self.shade_with(&mut part, side, *finish) {
+                self.pass_through(&mut part);
+            }
+            ray.value += part.value * k;
+            ray.mirrored += part.mirrored * k;
+            let mirrored = part.mirrored.brightness() * k;
+            let other = part.value.brightness() * k - mirrored;
+            if mirrored > most_mirrored {
+                most_mirrored = mirrored;
+                ray.mirrored_length = part.mirrored_length;
+            }
+            if other > most {
+                most = other;
+                ray.unmirrored_length = part.unmirrored_length;
+                ray.normal = part.normal;
+                ray.material = part.material;
+            }
+        }
+        Some(true)
+    }
+}

@@ -1,0 +1,214 @@
+//! Modifiers compiled once: each primitive that can modify a surface becomes a node and the modifier it goes on with.
+
+use super::{Environment, compile_material};
+use crate::Error;
+use crate::materials::Material;
+use crate::patterns::{Mixture, Pattern, Texture};
+use ambit_scene::{Class, Kind, ObjectId, Scene, VOID};
+use ambit_trace::Opacity;
+
+/// What a modifier does when a ray gets to it.
+#[derive(Debug)]
+pub(crate) enum Node {
+    Material(Material),
+    Pattern(Pattern),
+    Texture(Texture),
+    Mixture(Mixture),
+    /// An alias without a target: does nothing itself.
+    Transparent,
+    /// Cannot be used; the calculation ends when a ray needs it.
+    Unusable(Error),
+}
+
+/// A modifier: which primitive defines what it does, and what follows.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    node: u32,
+    /// The primitive that `node` was compiled from (an alias's target).
+    definition: ObjectId,
+    next: ObjectId,
+}
+
+const NO_LINK: Link = Link { node: u32::MAX, definition: VOID, next: VOID };
+
+/// All modifiers of a scene.
+#[derive(Debug)]
+pub(crate) struct Modifiers {
+    links: Vec<Link>,
+    nodes: Vec<Node>,
+    opacity: Vec<Opacity>,
+    /// Chains on which a material stands, be it inside a mixture.
+    has_material: Vec<bool>,
+    /// Modifiers that surely stop every shadow ray.
+    blocks: Vec<bool>,
+    /// True if some material bends rays on their way to a source.
+    pub(crate) bends: bool,
+}
+
+impl Modifiers {
+    /// Compiles every modifier of `scene`. Faulty ones become [`Node::Unusable`]: only a ray that needs one fails.
+    pub(crate) fn compile(scene: &Scene, environment: &Environment<'_>) -> Result<Self, Error> {
+        let last = scene.ids().rev().find(|&id| scene.object(id).kind.is_modifier()).map_or(0, |id| id as usize + 1);
+        let mut all = Self {
+            links: vec![NO_LINK; last],
+            nodes: Vec::new(),
+            opacity: vec![Opacity::Nothing; last],
+            has_material: vec![false; last],
+            blocks: vec![false; last],
+            bends: false,
+        };
+        let mut compiler = crate::patterns::Compiler::new(environment)?;
+        for id in 0..last as ObjectId {
+            let object = scene.object(id);
+            if !object.kind.is_modifier() {
+                continue;
+            }
+            let link = if object.kind == Kind::Alias {
+                all.alias(scene, id)
+            } else {
+                let node = all.node(scene, id, &mut compiler);
+                all.nodes.push(node);
+                Link { node: all.nodes.len() as u32 - 1, definition: id, next: object.modifier }
+            };
+            all.links[id as usize] = link;
+            all.classify(scene, id);
+        }
+        all.clear_clipped(scene);
+        Ok(all)
+    }
+
+    fn node(&self, scene: &Scene, id: ObjectId, compiler: &mut crate::patterns::Compiler<'_>) -> Node {
+        let made = match scene.object(id).kind.class() {
+            Class::Material => compile_material(scene, id, self, compiler).map(Node::Material),
+            Class::Pattern => Pattern::compile(scene, id, compiler).map(Node::Pattern),
+            Class::Texture => Texture::compile(scene, id, compiler).map(Node::Texture),
+            Class::Mixture => Mixture::compile(scene, id, compiler).map(Node::Mixture),
+            Class::Alias | Class::Surface | Class::Volume => Ok(Node::Transparent),
+        };
+        made.unwrap_or_else(Node::Unusable)
+    }
+
+    /// An alias with a target acts as the target with the alias's own modifier; one without is passed over.
+    fn alias(&mut self, scene: &Scene, id: ObjectId) -> Link {
+        let next = scene.object(id).modifier;
+        let target = scene.string_bytes(id, 0).and_then(|name| scene.modifier_before(name, id));
+        match target {
+            Some(t) => Link { next, ..self.links[t as usize] },
+            None => {
+                self.nodes.push(Node::Transparent);
+                Link { node: self.nodes.len() as u32 - 1, definition: id, next }
+            }
+        }
+    }
+
+    /// Finds the opacity class of a chain that starts at `id`; its links are already there.
+    fn classify(&mut self, scene: &Scene, id: ObjectId) {
+        let link = self.links[id as usize];
+        let (opacity, blocks) = match &self.nodes[link.node as usize] {
+            Node::Material(m) => {
+                self.bends |= m.bends();
+                (m.opacity(), m.blocks())
+            }
+            Node::Mixture(m) if m.sides.iter().any(|&side| self.has_material(side)) => (Opacity::Opaque, false),
+            Node::Mixture(_) => self.inherited(link.next),
+            Node::Unusable(_) => match scene.object(link.definition).kind.class() {
+                Class::Material | Class::Mixture => (Opacity::Opaque, false),
+                _ => self.inherited(link.next),
+            },
+            Node::Pattern(_) | Node::Texture(_) | Node::Transparent => self.inherited(link.next),
+        };
+        self.opacity[id as usize] = opacity;
+        self.has_material[id as usize] = opacity != Opacity::Nothing;
+        self.blocks[id as usize] = blocks;
+    }
+
+    fn inherited(&self, next: ObjectId) -> (Opacity, bool) {
+        if next == VOID { (Opacity::Nothing, false) } else { (self.opacity[next as usize], self.blocks[next as usize]) }
+    }
+
+    /// Modifiers named by antimatter may vanish, so they promise nothing to shadow rays.
+    fn clear_clipped(&mut self, scene: &Scene) {
+        for id in 0..self.links.len() as ObjectId {
+            if scene.object(id).kind != Kind::Antimatter {
+                continue;
+            }
+            for name in 0..scene.string_count(id) {
+                let Some(name) = scene.string_bytes(id, name) else { continue };
+                if let Some(m) = scene.modifier_before(name, id) {
+                    self.blocks[m as usize] = false;
+                    self.bends = true;
+                }
+            }
+        }
+    }
+
+    /// What a modifier does, the primitive that says so, and the modifier that follows.
+    #[inline]
+    pub(crate) fn get(&self, id: ObjectId) -> (&Node, ObjectId, ObjectId) {
+        let link = self.links[id as usize];
+        (&self.nodes[link.node as usize], link.definition, link.next)
+    }
+
+    /// The first material up the chain from `id`, aliases followed: its node and primitive.
+    pub(crate) fn material(&self, mut id: ObjectId) -> Option<(&Material, ObjectId)> {
+        while id != VOID {
+            let (node, definition, next) = self.get(id);
+            match node {
+                Node::Material(m) => return Some((m, definition)),
+                Node::Mixture(_) => return None,
+                Node::Unusable(_) => return None,
+                _ => id = next,
+            }
+        }
+        None
+    }
+
+    /// The error of a light-source material that a chain leads to but that cannot be used.
+    pub(crate) fn faulty_light(&self, scene: &Scene, mut id: ObjectId) -> Option<Error> {
+        while id != VOID {
+            let (node, definition, next) = self.get(id);
+            match node {
+                Node::Unusable(error) => {
+                    let kind = scene.object(definition).kind;
+                    if matches!(kind, Kind::Light | Kind::Illum | Kind::Glow | Kind::Spotlight) {
+                        return Some(error.clone());
+                    }
+                    if kind.class() == Class::Material {
+                        return None;
+                    }
+                }
+                Node::Material(_) | Node::Mixture(_) => return None,
+                _ => {}
+            }
+            id = next;
+        }
+        None
+    }
+
+    /// True if a pattern stands anywhere on the chain from `id`.
+    pub(crate) fn patterned(&self, mut id: ObjectId) -> bool {
+        while id != VOID {
+            let (node, _, next) = self.get(id);
+            if matches!(node, Node::Pattern(_) | Node::Mixture(_) | Node::Unusable(_)) {
+                return true;
+            }
+            id = next;
+        }
+        false
+    }
+
+    /// True if a chain leads to a material, be it inside a mixture.
+    pub(crate) fn has_material(&self, id: ObjectId) -> bool {
+        id != VOID && self.has_material[id as usize]
+    }
+
+    /// How surfaces with this immediate modifier take part in ties.
+    pub(crate) fn opacity(&self, id: ObjectId) -> Opacity {
+        if id == VOID { Opacity::Nothing } else { self.opacity[id as usize] }
+    }
+
+    /// True if surfaces with this immediate modifier stop every shadow ray.
+    pub(crate) fn blocks(&self, id: ObjectId) -> bool {
+        id != VOID && self.blocks[id as usize]
+    }
+}

@@ -1,0 +1,227 @@
+//! The renderer: batches of primary rays in, answers out.
+//!
+//! A batch is shaded in parallel against a frozen cache and frozen shadow counts; what missed the cache is then
+//! resolved in rounds, and everything learnt becomes visible to the next batch. The answers depend on the requests and
+//! the borders of batches, never on threads.
+
+use crate::prepare::{Environment, Loaded, Prepared};
+use crate::ray::{Interior, Ray};
+use crate::request::{Aim, Answer, Request};
+use crate::sharing::Sharing;
+use crate::sources::{Tally, sensor};
+use crate::tracer::{Origin, Tracer};
+use crate::walk::Walk;
+use crate::work::Work;
+use crate::{Error, Options};
+use ambit_ambient::{Cache, Miss, Params};
+use ambit_base::{DVec3, FAR, Notify, Rgb, Stream, hash_bits};
+use ambit_scene::{ObjectId, VOID};
+use rayon::prelude::*;
+use std::borrow::Cow;
+use std::sync::{Mutex, PoisonError};
+
+/// Most requests that are shaded against one state of the cache.
+const BATCH: usize = 4096;
+/// Fewer requests than this are shaded on the calling thread.
+const PARALLEL_FROM: usize = 8;
+
+/// `rtrace -I` starts its rays this far in front of the point of measurement, and declares them to hit a little
+/// behind that, scene units.
+const SENSOR_LIFT: f64 = 1.1e-4;
+const SENSOR_DISTANCE: f64 = 1e-5;
+
+/// A scene ready to be asked for light.
+#[derive(Debug)]
+pub struct Renderer {
+    scene: Prepared,
+    options: Options,
+    cache: Cache,
+    tally: Tally,
+    works: Vec<Mutex<Work>>,
+    rays: u64,
+    pub(crate) sharing: Option<Sharing>,
+}
+
+impl Renderer {
+    /// Compiles `loaded` for `options`.
+    pub fn new(loaded: Loaded, options: Options, environment: &Environment<'_>) -> Result<Self, Error> {
+        let scene = Prepared::new(loaded, &options, environment)?;
+        let a = &options.ambient;
+        let params = Params {
+            bounces: a.bounces,
+            accuracy: a.accuracy,
+            resolution: a.resolution,
+            divisions: a.divisions,
+            super_samples: a.super_samples,
+            value: a.value,
+            weight: a.weight,
+            min_weight: options.limits.weight,
+            seed: options.seed,
+        };
+        let cache = Cache::new(params, scene.cube.origin, scene.cube.edge);
+        let sources = scene.sources.len();
+        let works = (0..=rayon::current_num_threads()).map(|_| Mutex::new(Work::new(sources))).collect();
+        Ok(Self { scene, options, cache, tally: Tally::new(sources), works, rays: 0, sharing: None })
+    }
+
+    /// Answers `requests`, in order. Warnings of the ambient file go to `notify`.
+    pub fn trace(&mut self, requests: &[Request], notify: &dyn Notify) -> Result<Vec<Answer>, Error> {
+        let mut answers = Vec::with_capacity(requests.len());
+        for batch in requests.chunks(BATCH) {
+            self.batch(batch, &mut answers)?;
+            self.exchange(notify, false)?;
+        }
+        Ok(answers)
+    }
+
+    fn batch(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Error> {
+        let tracer = Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works };
+        let cache = &self.cache;
+        let one = |request: &Request| {
+            let mut misses = Vec::new();
+            let answer = tracer.with_walk(cache, &mut misses, |walk| walk.answer(request));
+            (answer, misses)
+        };
+        let shaded: Vec<(Answer, Vec<Miss<Origin>>)> = if requests.len() < PARALLEL_FROM {
+            requests.iter().map(one).collect()
+        } else {
+            requests.par_iter().with_max_len(16).map(one).collect()
+        };
+        let first = answers.len();
+        let mut misses = Vec::new();
+        let mut owners = Vec::new();
+        for (i, (answer, own)) in shaded.into_iter().enumerate() {
+            answers.push(answer);
+            owners.extend(std::iter::repeat_n(first + i, own.len()));
+            misses.extend(own);
+        }
+        if !misses.is_empty() && !self.scene.fault.is_set() {
+            let values = self.cache.resolve(&tracer, &misses);
+            for ((miss, value), owner) in misses.iter().zip(values).zip(owners) {
+                answers[owner].value += miss.coefficient * value;
+            }
+        }
+        for answer in &mut answers[first..] {
+            answer.make_finite();
+        }
+        self.settle()
+    }
+
+    /// Lets the next batch see what this one has counted.
+    fn settle(&mut self) -> Result<(), Error> {
+        for work in &self.works {
+            let mut work = work.lock().unwrap_or_else(PoisonError::into_inner);
+            self.tally.take(&mut work.tally);
+            self.rays += std::mem::take(&mut work.rays);
+        }
+        self.scene.fault.take().map_or(Ok(()), Err)
+    }
+
+    /// Rays traced so far.
+    pub fn rays(&self) -> u64 {
+        self.rays
+    }
+
+    /// The irradiance cache.
+    pub fn cache(&self) -> &Cache {
+        &self.cache
+    }
+
+    /// The irradiance cache, to load records into.
+    pub(crate) fn cache_mut(&mut self) -> &mut Cache {
+        &mut self.cache
+    }
+
+    /// Identifier of an object; `*` for [`VOID`] as a surface is the caller's affair.
+    pub fn name(&self, id: ObjectId) -> Cow<'_, str> {
+        if id == VOID { Cow::Borrowed("void") } else { self.scene.objects.name(id) }
+    }
+}
+
+impl Tracer<'_> {
+    /// The medium outside every mist and dielectric.
+    pub(crate) fn global_interior(&self) -> Interior {
+        let m = &self.options.medium;
+        Interior { extinction: m.extinction, albedo: m.albedo, eccentricity: m.eccentricity as f32 }
+    }
+
+    fn stream(&self, index: u32) -> Stream {
+        let key = hash_bits(&[self.options.seed, 0x0a11]);
+        if self.options.uncorrelated { Stream::uncorrelated(index, key) } else { Stream::new(index, key) }
+    }
+}
+
+impl Walk<'_> {
+    fn answer(&mut self, request: &Request) -> Answer {
+        let tracer = self.tracer;
+        let direction = request.direction.normalize_or_zero();
+        if direction == DVec3::ZERO || !request.origin.is_finite() {
+            return Answer::nothing(request.origin, direction);
+        }
+        let stream = tracer.stream(request.index);
+        let interior = tracer.global_interior();
+        let mut ray = match request.aim {
+            Aim::Irradiance => {
+                let start = request.origin + direction * SENSOR_LIFT;
+                Ray::primary(start, -direction, FAR, interior, stream)
+            }
+            Aim::Radiance | Aim::Geometry => Ray::primary(request.origin, direction, request.limit, interior, stream),
+        };
+        match request.aim {
+            Aim::Irradiance => {
+                self.work.rays += 1;
+                ray.distance = SENSOR_DISTANCE;
+                ray.point = ray.origin + ray.direction * SENSOR_DISTANCE;
+                ray.hit = Some(sensor(SENSOR_DISTANCE, direction));
+                ray.unmirrored_length = SENSOR_DISTANCE;
+                self.lambertian(&mut ray);
+            }
+            Aim::Radiance => self.evaluate(&mut ray),
+            Aim::Geometry => self.locate(&mut ray),
+        }
+        let mut answer = Answer::nothing(ray.origin, ray.direction);
+        answer.value = ray.value;
+        answer.mirrored = ray.mirrored;
+        answer.length = ray.effective_length();
+        answer.mirrored_length = ray.mirrored_length;
+        answer.unmirrored_length = ray.unmirrored_length;
+        answer.first_length = ray.distance;
+        answer.point = ray.point;
+        answer.weight = ray.weight;
+        if let Some(hit) = &ray.hit
+            && request.aim != Aim::Irradiance
+        {
+            answer.normal = ray.normal;
+            answer.geometric_normal = hit.normal;
+            answer.uv = hit.uv;
+            answer.surface = hit.object;
+            answer.modifier = hit.modifier;
+            answer.material = ray.material;
+        }
+        answer
+    }
+
+    /// Finds the nearest surface and shades nothing.
+    fn locate(&mut self, ray: &mut Ray<'_>) {
+        self.work.rays += 1;
+        let query = ambit_trace::Ray { origin: ray.origin, direction: ray.direction, limit: ray.limit };
+        let Some(hit) = self.tracer.scene.world.nearest(&query) else { return };
+        ray.distance = hit.distance;
+        ray.unmirrored_length = hit.distance;
+        ray.point = ray.origin + ray.direction * hit.distance;
+        ray.normal = if hit.cosine < 0.0 { -hit.normal } else { hit.normal };
+        ray.material = self.tracer.scene.modifiers.material(hit.modifier).map_or(VOID, |m| m.1);
+        ray.hit = Some(hit);
+    }
+}
+
+impl Answer {
+    /// Keeps what is not a number, or infinite, out of pictures and tables.
+    fn make_finite(&mut self) {
+        for colour in [&mut self.value, &mut self.mirrored] {
+            if !colour.is_finite() {
+                *colour = Rgb::ZERO;
+            }
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! From a hit to its material: the chain of modifiers is walked from the surface upwards; patterns multiply the
+//! colour, textures tilt the normal, a mixture splits the walk, a material ends it.
+
+use crate::Error;
+use crate::materials::Finish;
+use crate::prepare::Node;
+use crate::ray::Ray;
+use crate::walk::Walk;
+use ambit_base::{DVec3, Rgb};
+use ambit_scene::{Kind, ObjectId, VOID};
+
+impl Walk<'_> {
+    /// Shades a ray at its hit; false if it goes on as if nothing were there.
+    pub(crate) fn shade(&mut self, ray: &mut Ray<'_>) -> bool {
+        let (modifier, tilt) = ray.hit.as_ref().map_or((VOID, DVec3::ZERO), |h| (h.modifier, h.tilt));
+        self.shade_with(ray, modifier, Finish { pattern: Rgb::ONE, tilt })
+    }
+
+    /// Shades with another modifier in place of the surface's own; [`VOID`] lets the ray pass.
+    pub(crate) fn shade_as(&mut self, ray: &mut Ray<'_>, modifier: ObjectId) -> bool {
+        let tilt = ray.hit.as_ref().map_or(DVec3::ZERO, |h| h.tilt);
+        self.shade_with(ray, modifier, Finish { pattern: Rgb::ONE, tilt })
+    }
+
+    /// Walks the chain from `id` with what has been gathered already.
+    pub(crate) fn shade_with(&mut self, ray: &mut Ray<'_>, mut id: ObjectId, mut finish: Finish) -> bool {
+        let scene = self.tracer.scene;
+        while id != VOID {
+            let (node, definition, next) = scene.modifiers.get(id);
+            match node {
+                Node::Material(material) => {
+                    if !self.gather(ray, next, &mut finish) {
+                        return true;
+                    }
+                    ray.material = definition;
+                    return self.material(ray, material, finish);
+                }
+                Node::Mixture(mixture) => {
+                    if let Some(shaded) = self.mix(ray, mixture, next, &mut finish) {
+                        return shaded;
+                    }
+                }
+                Node::Pattern(pattern) => self.apply_pattern(ray, pattern, &mut finish),
+                Node::Texture(texture) => self.apply_texture(ray, texture, &mut finish),
+                Node::Transparent => {}
+                Node::Unusable(error) => {
+                    self.fail(error.clone());
+                    return true;
+                }
+            }
+            id = next;
+        }
+        false
+    }
+
+    /// Applies a material's own modifiers, which may only be patterns, textures and mixtures of such; false on error.
+    pub(crate) fn gather(&mut self, ray: &mut Ray<'_>, mut id: ObjectId, finish: &mut Finish) -> bool {
+        let scene = self.tracer.scene;
+        while id != VOID {
+            let (node, definition, next) = scene.modifiers.get(id);
+            match node {
+                Node::Material(_) => {
+                    let surface = ray.hit.as_ref().map_or(VOID, |h| h.object);
+                    self.fail(Error::conflicting_material(&scene.objects, definition, surface));
+                    return false;
+                }
+                Node::Mixture(mixture) => {
+                    if self.mix(ray, mixture, next, finish).is_some() {
+                        return false;
+                    }
+                }
+                Node::Pattern(pattern) => self.apply_pattern(ray, pattern, finish),
+                Node::Texture(texture) => self.apply_texture(ray, texture, finish),
+                Node::Transparent => {}
+                Node::Unusable(error) => {
+                    self.fail(error.clone());
+                    return false;
+                }
+            }
+            id = next;
+        }
+        true
+    }
+
+    /// Applies the patterns of a whole chain, whatever material stands on it.
+    pub(crate) fn gather_patterns(&mut self, ray: &Ray<'_>, mut id: ObjectId, finish: &mut Finish) {
+        let scene = self.tracer.scene;
+        while id != VOID {
+            let (node, _, next) = scene.modifiers.get(id);
+            if let Node::Pattern(pattern) = node {
+                self.apply_pattern(ray, pattern, finish);
+            }
+            id = next;
+        }
+    }
+
+    /// True for polygons and rings, whose hits share one normal.
+    pub(crate) fn is_flat(&self, ray: &Ray<'_>) -> bool {
+        let Some(hit) = &ray.hit else { return false };
+        hit.object != VOID && matches!(self.tracer.scene.objects.object(hit.object).kind, Kind::Polygon | Kind::Ring)
+    }
+
+    /// True if the surface's immediate modifier is called `Phong`, which keeps textures from bending rays.
+    pub(crate) fn is_phong(&self, ray: &Ray<'_>) -> bool {
+        ray.hit
+            .as_ref()
+            .is_some_and(|h| h.modifier != VOID && self.tracer.scene.objects.name_bytes(h.modifier) == b"Phong")
+    }
+}

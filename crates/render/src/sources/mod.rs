@@ -1,0 +1,20 @@
+//! Light sources: the list, how each is sampled, and the direct calculation with its shadow rays.
+
+mod direct;
+mod distant;
+mod emitter;
+mod list;
+mod partition;
+mod tally;
+mod virtual_sources;
+
+pub(crate) use direct::Candidate;
+pub(crate) use distant::sensor;
+pub(crate) use emitter::{Emitter, Source, Spot};
+pub(crate) use list::find_sources;
+pub(crate) use partition::Part;
+pub(crate) use tally::{Count, Tally};
+pub(crate) use virtual_sources::{Relay, add_virtual_sources};
+
+/// Index in the list of sources.
+pub(crate) type SourceId = u32;

@@ -1,0 +1,119 @@
+//! What all threads share while a batch is computed, and the hemisphere samples it gives to the irradiance cache.
+
+use crate::Options;
+use crate::prepare::Prepared;
+use crate::ray::{ClipSet, Fate, Interior, Kinds, Ray};
+use crate::sources::Tally;
+use crate::walk::Walk;
+use crate::work::Work;
+use ambit_ambient::{Cache, Miss, Query, Sample, Sampler};
+use ambit_base::{DVec3, EPSILON, FAR, Rgb, Stream};
+use ambit_trace::Opacity;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Scene, options and frozen counts; one scratch memory a thread.
+#[derive(Debug)]
+pub(crate) struct Tracer<'s> {
+    pub(crate) scene: &'s Prepared,
+    pub(crate) options: &'s Options,
+    pub(crate) tally: &'s Tally,
+    pub(crate) works: &'s [Mutex<Work>],
+}
+
+/// What a diffuse question carries so that the path can go on from it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Origin {
+    level: i32,
+    transmitted: bool,
+    clipped: ClipSet,
+    interior: Interior,
+    travelled: f64,
+}
+
+impl Origin {
+    /// The path as it stands at a ray's hit, going on to the near or (`transmitted`) the far side.
+    pub(crate) fn of(ray: &Ray<'_>, transmitted: bool) -> Self {
+        Self {
+            level: ray.level,
+            transmitted,
+            clipped: if transmitted { ray.next_clipped } else { ray.clipped },
+            interior: ray.interior,
+            travelled: ray.travelled + ray.distance,
+        }
+    }
+}
+
+impl Tracer<'_> {
+    /// This thread's scratch memory. The lock is never waited for: each thread of the pool has its own, and a thread
+    /// outside the pool works alone.
+    pub(crate) fn work(&self) -> MutexGuard<'_, Work> {
+        let slot = rayon::current_thread_index().map_or(0, |i| i + 1);
+        self.works[slot % self.works.len()].lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A walk for one item.
+    pub(crate) fn with_walk<R>(
+        &self,
+        cache: &Cache,
+        misses: &mut Vec<Miss<Origin>>,
+        f: impl FnOnce(&mut Walk<'_>) -> R,
+    ) -> R {
+        let mut work = self.work();
+        f(&mut Walk { tracer: self, cache, work: &mut work, misses })
+    }
+}
+
+impl Sampler for Tracer<'_> {
+    type Origin = Origin;
+
+    fn sample(
+        &self,
+        cache: &Cache,
+        query: &Query<Origin>,
+        direction: DVec3,
+        weight: f32,
+        stream: Stream,
+        misses: &mut Vec<Miss<Origin>>,
+    ) -> Option<Sample> {
+        let from = &query.origin;
+        let kind = if from.transmitted { Kinds::AMBIENT_TRANSMITTED } else { Kinds::AMBIENT_REFLECTED };
+        let mut ray = Ray::primary(query.position, direction, FAR, from.interior, stream);
+        ray.kind = kind;
+        ray.lineage = kind;
+        ray.level = from.level + i32::from(!from.transmitted);
+        ray.depth = query.level + 1;
+        ray.weight = query.weight * weight;
+        ray.clipped = from.clipped;
+        ray.travelled = from.travelled;
+        match ray.fate(true, &self.options.limits) {
+            Fate::Alive => {}
+            // A path that Russian roulette ends brings nothing, and that is its fair share.
+            Fate::Unlucky => return Some(Sample { radiance: Rgb::ZERO, distance: FAR }),
+            Fate::Refused => return None,
+        }
+        self.with_walk(cache, misses, |walk| walk.evaluate(&mut ray));
+        Some(Sample { radiance: ray.value * ray.coefficient, distance: ray.effective_length() })
+    }
+
+    fn occluded(&self, query: &Query<Origin>, from: DVec3, direction: DVec3) -> bool {
+        let length = direction.length();
+        if length <= EPSILON {
+            return false;
+        }
+        let unit = direction / length;
+        let mut ray = ambit_trace::Ray { origin: from, direction: unit, limit: length };
+        while let Some(hit) = self.scene.world.nearest(&ray) {
+            let clipped =
+                query.origin.clipped != 0 && self.scene.clip_sets.contains(query.origin.clipped, hit.modifier);
+            if !clipped && self.scene.modifiers.opacity(hit.modifier) == Opacity::Opaque {
+                return true;
+            }
+            ray.origin += unit * hit.distance;
+            ray.limit -= hit.distance;
+            if ray.limit <= EPSILON {
+                break;
+            }
+        }
+        false
+    }
+}

@@ -1,0 +1,115 @@
+//! Following rays: the nearest hit, what passes through, the medium on the way, and the distant sources.
+
+use crate::Error;
+use crate::ray::{Kinds, Ray, transmittance};
+use crate::tracer::{Origin, Tracer};
+use crate::work::Work;
+use ambit_ambient::{Cache, Miss};
+use ambit_base::{EPSILON, FAR, Rgb};
+use ambit_trace::Hit;
+
+/// One item's way through the scene: what shading reads, and what it leaves behind.
+///
+/// Everything read is frozen while a batch is computed. Diffuse questions that the cache cannot answer are pushed on
+/// `misses` with their coefficients; the item's value lacks them until they are resolved.
+pub(crate) struct Walk<'s> {
+    pub(crate) tracer: &'s Tracer<'s>,
+    pub(crate) cache: &'s Cache,
+    pub(crate) work: &'s mut Work,
+    pub(crate) misses: &'s mut Vec<Miss<Origin>>,
+}
+
+impl Walk<'_> {
+    /// Traces a ray and shades what it meets.
+    pub(crate) fn evaluate(&mut self, ray: &mut Ray<'_>) {
+        self.work.rays += 1;
+        let query = ambit_trace::Ray { origin: ray.origin, direction: ray.direction, limit: ray.limit };
+        match self.tracer.scene.world.nearest(&query) {
+            Some(hit) => self.shade_hit(ray, hit),
+            None if ray.limit < FAR => {}
+            None => {
+                self.distant(ray);
+                self.medium(ray);
+            }
+        }
+    }
+
+    /// Shades a ray that meets `hit` first.
+    pub(crate) fn shade_hit(&mut self, ray: &mut Ray<'_>, hit: Hit) {
+        ray.distance = hit.distance;
+        ray.unmirrored_length = hit.distance;
+        ray.point = ray.origin + ray.direction * hit.distance;
+        ray.hit = Some(hit);
+        ray.next_clipped = ray.clipped;
+        let hidden = ray.clipped != 0 && self.tracer.scene.clip_sets.contains(ray.clipped, hit.modifier);
+        if hidden || !self.shade(ray) {
+            self.pass_through(ray);
+        }
+        self.medium(ray);
+    }
+
+    /// Continues a ray unchanged behind its hit.
+    pub(crate) fn pass_through(&mut self, ray: &mut Ray<'_>) {
+        let (mut child, _) = ray.spawn(Kinds::TRANSFERRED, ray.direction, None, &self.tracer.options.limits, PASS);
+        // The extinction on this segment is applied once, by `medium`.
+        child.throughput *= self.attenuation(ray);
+        self.evaluate(&mut child);
+        let (value, mirrored) = (child.value, child.mirrored);
+        let (r, x) = (child.mirrored_length, child.unmirrored_length);
+        ray.value = value;
+        ray.mirrored = mirrored;
+        ray.mirrored_length = ray.distance + r;
+        ray.unmirrored_length = ray.distance + x;
+    }
+
+    /// Transmittance of the medium on this ray's own segment.
+    pub(crate) fn attenuation(&self, ray: &Ray<'_>) -> Rgb {
+        if ray.interior.extinction == Rgb::ZERO {
+            Rgb::ONE
+        } else if ray.is_shadow() {
+            transmittance(ray.interior.extinction * (Rgb::ONE - ray.interior.albedo), ray.distance)
+        } else {
+            transmittance(ray.interior.extinction, ray.distance)
+        }
+    }
+
+    /// Applies the medium between a ray's origin and its hit.
+    fn medium(&mut self, ray: &mut Ray<'_>) {
+        let interior = ray.interior;
+        if interior.extinction == Rgb::ZERO {
+            return;
+        }
+        let t = self.attenuation(ray);
+        ray.value *= t;
+        ray.mirrored *= t;
+        if !ray.is_shadow() && interior.albedo.max_element() > EPSILON as f32 {
+            let lost = Rgb::ONE - transmittance(interior.extinction, ray.distance);
+            ray.value += interior.albedo * self.tracer.options.ambient.value * lost;
+        }
+    }
+
+    /// A child of a shaded ray: spawned with its share of the parent's throughput, the medium before the hit included.
+    pub(crate) fn child<'p>(
+        &self,
+        ray: &'p Ray<'_>,
+        kind: Kinds,
+        direction: ambit_base::DVec3,
+        coefficient: Rgb,
+        tag: u64,
+    ) -> Option<Ray<'p>>
+    where
+        Self: 'p,
+    {
+        let (mut child, alive) = ray.spawn(kind, direction, Some(coefficient), &self.tracer.options.limits, tag);
+        child.throughput *= self.attenuation(ray);
+        alive.then_some(child)
+    }
+
+    /// Notes the first error of a calculation; the caller of the renderer gets it after the batch.
+    pub(crate) fn fail(&self, error: Error) {
+        self.tracer.scene.fault.set(error);
+    }
+}
+
+/// Tag of pass-through rays.
+const PASS: u64 = 1;

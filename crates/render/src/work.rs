@@ -1,0 +1,52 @@
+//! Scratch memory and counters of one thread: nothing on the ray path allocates once these have grown.
+
+use crate::sources::{Candidate, Count, Part, SourceId, Tally};
+
+/// What one thread reuses from ray to ray.
+#[derive(Debug)]
+pub(crate) struct Work {
+    /// Rays traced.
+    pub(crate) rays: u64,
+    pub(crate) candidates: Vec<Candidate>,
+    pub(crate) parts: Vec<Part>,
+    pub(crate) cal: ambit_cal::Scratch,
+    /// Shadow tests since the last batch.
+    pub(crate) tally: Tally,
+    /// Shadow tests of the hit being lit.
+    here: Vec<Count>,
+}
+
+impl Work {
+    pub(crate) fn new(sources: usize) -> Self {
+        Self {
+            rays: 0,
+            candidates: Vec::new(),
+            parts: Vec::new(),
+            cal: ambit_cal::Scratch::default(),
+            tally: Tally::zero(sources),
+            here: Tally::zero(sources).counts,
+        }
+    }
+
+    /// Counts a shadow test of the hit being lit.
+    pub(crate) fn note_test(&mut self, source: SourceId, clear: bool) {
+        let c = &mut self.here[source as usize];
+        c.tests += 1;
+        c.hits += u64::from(clear);
+    }
+
+    /// Shadow tests of a source at the hit being lit.
+    pub(crate) fn tests_here(&self, source: SourceId) -> Count {
+        self.here[source as usize]
+    }
+
+    /// Moves the counts of the hit being lit to the thread's.
+    pub(crate) fn settle(&mut self, tested: impl Iterator<Item = SourceId>) {
+        for s in tested {
+            let here = std::mem::replace(&mut self.here[s as usize], Count { hits: 0, tests: 0 });
+            let total = &mut self.tally.counts[s as usize];
+            total.hits += here.hits;
+            total.tests += here.tests;
+        }
+    }
+}
