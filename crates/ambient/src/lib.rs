@@ -39,13 +39,15 @@ mod store;
 mod supersample;
 #[cfg(test)]
 mod tests;
+mod text;
 mod tilt;
 
 pub use cache::{Cache, Statistics};
 pub use codec::{Layout, RECORD_BYTES};
-pub use file::{AmbientFile, Contents, FORMAT, FileError, Opened, scan};
+pub use file::{AmbientFile, Contents, FORMAT, FileError, Opened, scan, scan_header};
 pub use hemisphere::Hemisphere;
 pub use params::{ASSUMED_REFLECTANCE, Limits, Params};
 pub use record::Record;
 pub use sampler::{Answer, Miss, Query, Sample, Sampler};
+pub use text::TextForm;
 pub use tilt::Tilt;

@@ -12,5 +12,5 @@ mod share;
 mod tests;
 
 pub use error::FileError;
-pub use scan::{Contents, FORMAT, scan};
+pub use scan::{Contents, FORMAT, scan, scan_header};
 pub use share::{AmbientFile, Opened};

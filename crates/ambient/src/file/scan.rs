@@ -27,8 +27,9 @@ pub struct Contents {
     pub torn: usize,
 }
 
-/// Understands the bytes of a whole ambient file. The error says what was found and what was expected.
-pub fn scan(bytes: &[u8], file: &str) -> Result<Contents, String> {
+/// Understands the start of an ambient file: its header, layout, and where the first record begins. The error says what
+/// was found and what was expected.
+pub fn scan_header(bytes: &[u8], file: &str) -> Result<(Header, Layout, usize), String> {
     let (header, data) = Header::parse(bytes, file).map_err(|e| e.to_string())?;
     if let Some(format) = header.format()
         && format != FORMAT
@@ -43,6 +44,12 @@ pub fn scan(bytes: &[u8], file: &str) -> Result<Contents, String> {
     let magic = bytes.get(data..start).ok_or("the file ends after its header (expected magic number 561)")?;
     let magic = u16::from_be_bytes([magic[0], magic[1]]);
     let layout = Layout::of_magic(magic).ok_or_else(|| format!("magic number {magic} (expected 561 or 559)"))?;
+    Ok((header, layout, start))
+}
+
+/// Understands the bytes of a whole ambient file.
+pub fn scan(bytes: &[u8], file: &str) -> Result<Contents, String> {
+    let (header, layout, start) = scan_header(bytes, file)?;
     let (records, damaged, torn) = records(&bytes[start..], layout);
     Ok(Contents { header, layout, start, records, damaged, torn })
 }

@@ -1,0 +1,147 @@
+//! Prints an ambient file as text, or turns such text back into an ambient file.
+
+use ambit_ambient::{FORMAT, Layout, Record, TextForm, scan_header};
+use ambit_file::{Header, command_line};
+use std::env::args_os;
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Write};
+use std::os::unix::ffi::OsStrExt;
+use std::process::ExitCode;
+
+/// What the arguments ask for.
+#[derive(Clone, Copy, Debug)]
+struct Options {
+    form: TextForm,
+    header: bool,
+    reverse: bool,
+}
+
+fn main() -> ExitCode {
+    match run(&args_os().collect::<Vec<_>>()) {
+        // A reader that has seen enough is no failure.
+        Err(Failure::Output(e)) if e.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("{failure}");
+            ExitCode::FAILURE
+        }
+        Ok(()) => ExitCode::SUCCESS,
+    }
+}
+
+/// What may go wrong, in Radiance's words.
+#[derive(Debug)]
+enum Failure {
+    Option(String),
+    Missing(String),
+    Input(io::Error),
+    Format(String),
+    Output(io::Error),
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Option(word) => write!(f, "lookamb: unknown option '{word}'"),
+            Self::Missing(file) => write!(f, "{file}: file not found"),
+            Self::Input(e) => write!(f, "lookamb: cannot read input: {e}"),
+            Self::Format(problem) => write!(f, "lookamb: format error on input: {problem}"),
+            Self::Output(e) => write!(f, "lookamb: cannot write output: {e}"),
+        }
+    }
+}
+
+fn run(words: &[OsString]) -> Result<(), Failure> {
+    let mut options = Options { form: TextForm::Labelled, header: true, reverse: false };
+    let mut words_left = words.iter().skip(1);
+    let mut file = None;
+    for word in words_left.by_ref() {
+        match word.as_bytes() {
+            [b'-', b'd', ..] => options.form = TextForm::Tabular,
+            [b'-', b'h', ..] => options.header = false,
+            [b'-', b'r', ..] => options.reverse = true,
+            [b'-', ..] => return Err(Failure::Option(word.to_string_lossy().into_owned())),
+            _ => {
+                file = Some(word);
+                break;
+            }
+        }
+    }
+    let mut bytes = Vec::new();
+    let name = match file {
+        Some(path) => {
+            let name = path.to_string_lossy().into_owned();
+            let mut file = File::open(path).map_err(|_| Failure::Missing(name.clone()))?;
+            file.read_to_end(&mut bytes).map_err(Failure::Input)?;
+            name
+        }
+        None => {
+            io::stdin().lock().read_to_end(&mut bytes).map_err(Failure::Input)?;
+            "standard input".to_owned()
+        }
+    };
+    let mut out = BufWriter::new(io::stdout().lock());
+    if options.reverse {
+        let line = command_line(b"lookamb", words.iter().skip(1).map(|w| w.as_bytes()));
+        to_binary(&bytes, &name, options, &line, &mut out)?;
+    } else {
+        to_text(&bytes, &name, options, &mut out)?;
+    }
+    out.flush().map_err(Failure::Output)
+}
+
+/// The lines of a header that text and binary share.
+fn kept(header: &Header) -> Header {
+    let mut out = Header::empty();
+    let dropped = [&b"NCOMP="[..], b"WAVELENGTH_SPLITS="];
+    out.extend(header.lines_without_format().filter(|l| !dropped.iter().any(|d| l.starts_with(d))));
+    out
+}
+
+fn to_text(bytes: &[u8], name: &str, options: Options, out: &mut impl Write) -> Result<(), Failure> {
+    let (header, layout, start) = scan_header(bytes, name).map_err(Failure::Format)?;
+    if options.header {
+        let mut lines = kept(&header);
+        lines.push("FORMAT=ascii");
+        lines.write(out).map_err(Failure::Output)?;
+    }
+    // As in Radiance the listing ends at the first record that makes no sense.
+    let (records, _) = bytes[start..].as_chunks();
+    for record in records.iter().map(|r| layout.decode(r)).take_while(Record::is_plausible) {
+        out.write_all(options.form.write(&record).as_bytes()).map_err(Failure::Output)?;
+    }
+    Ok(())
+}
+
+fn to_binary(bytes: &[u8], name: &str, options: Options, line: &[u8], out: &mut impl Write) -> Result<(), Failure> {
+    let (mut header, start) = if options.header {
+        let (header, start) = Header::parse(bytes, name).map_err(|e| Failure::Format(e.to_string()))?;
+        if let Some(format) = header.format()
+            && format != "ascii"
+        {
+            return Err(Failure::Format(format!("FORMAT={format} (expected ascii)")));
+        }
+        (kept(&header), start)
+    } else {
+        let mut header = Header::new();
+        header.push(line);
+        (header, 0)
+    };
+    header.push("NCOMP=3");
+    header.push(format!("FORMAT={FORMAT}"));
+    header.write(out).map_err(Failure::Output)?;
+    out.write_all(&Layout::CURRENT.magic().to_be_bytes()).map_err(Failure::Output)?;
+    let text = String::from_utf8_lossy(&bytes[start..]);
+    let mut words = text.split_ascii_whitespace();
+    while let Some(record) = options.form.read(&mut words) {
+        match record {
+            Ok(record) => out.write_all(&Layout::CURRENT.encode(&record)).map_err(Failure::Output)?,
+            Err(problem) => {
+                // Radiance stops here without a word.
+                eprintln!("lookamb: warning - stopped at {problem}");
+                break;
+            }
+        }
+    }
+    Ok(())
+}
