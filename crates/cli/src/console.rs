@@ -1,0 +1,46 @@
+//! Messages on standard error, and the error file that takes its place.
+
+use crate::failure::Failure;
+use ambit_base::Notify;
+use std::fs::OpenOptions;
+use std::io::{self, Write};
+
+/// Prints `PROGRAM: CLASS - TEXT` on standard error; a closed standard error is no reason to stop.
+#[derive(Clone, Debug)]
+pub struct ConsoleMessages {
+    /// Base name of the running program.
+    pub program: String,
+    /// False drops warnings (`-w-`).
+    pub warnings: bool,
+}
+
+impl ConsoleMessages {
+    /// Prints one message.
+    pub fn print(&self, text: impl std::fmt::Display) {
+        let _ = writeln!(io::stderr(), "{}: {text}", self.program);
+    }
+
+    /// Prints why the program stops.
+    pub fn fail(&self, failure: &Failure) {
+        self.print(failure);
+    }
+}
+
+impl Notify for ConsoleMessages {
+    fn warn(&self, text: &str) {
+        if self.warnings {
+            self.print(format_args!("warning - {text}"));
+        }
+    }
+}
+
+/// Makes standard error append to a file (`-e`) and records there which run this is: `command` is the whole command
+/// line.
+///
+/// # Errors
+/// If the file can not be opened or written.
+pub fn attach_error_file(file: &str, command: &str) -> io::Result<()> {
+    let mut log = OpenOptions::new().append(true).create(true).open(file)?;
+    writeln!(log, "**************\n*** PID {:5}: {command}\n", std::process::id())?;
+    Ok(rustix::stdio::dup2_stderr(&log)?)
+}

@@ -1,0 +1,169 @@
+//! Reading arguments left to right: options up to the first word without a dash, which names the octree and must be
+//! the last.
+
+use crate::failure::Failure;
+use crate::outside::Outside;
+use crate::table::{Place, Row};
+use ambit_file::{WORD_LIMIT, integer, real, split_words};
+use std::collections::VecDeque;
+
+/// The words of a command line that have not been read yet, and those that have.
+pub struct Arguments<'a> {
+    rest: VecDeque<String>,
+    /// Words read, after expansion: what a header records.
+    read: Vec<String>,
+    outside: &'a dyn Outside,
+}
+
+/// What a command line asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Scan {
+    /// A run.
+    Run {
+        /// The octree argument.
+        octree: Option<String>,
+        /// The options after expansion.
+        words: Vec<String>,
+    },
+    /// `-version`, `--version`.
+    Version,
+    /// `-defaults`, `-help`: the parameters as set so far.
+    Defaults,
+    /// `--help`.
+    Help,
+    /// `--man`.
+    Man,
+    /// `--completions SHELL`.
+    Completions(String),
+}
+
+/// Reads a command line into `settings`, by the rows of a table.
+///
+/// # Errors
+/// `command line error at 'WORD'` for an option that is unknown, incomplete or malformed, and whatever the options
+/// themselves object to.
+pub fn scan<S>(
+    arguments: impl IntoIterator<Item = String>,
+    table: &[Row<S>],
+    settings: &mut S,
+    outside: &dyn Outside,
+) -> Result<Scan, Failure> {
+    let mut words = Arguments { rest: arguments.into_iter().collect(), read: Vec::new(), outside };
+    while let Some(word) = words.expanded()? {
+        match word.as_str() {
+            "-version" | "--version" => return Ok(Scan::Version),
+            "-defaults" | "-help" => return Ok(Scan::Defaults),
+            "--help" => return Ok(Scan::Help),
+            "--man" => return Ok(Scan::Man),
+            "--completions" => return words.text(&word).map(Scan::Completions),
+            option if option.starts_with('-') => words.option(option, table, settings)?,
+            _ => {
+                words.read.pop();
+                let alone = words.rest.is_empty();
+                return if alone { Ok(words.run(Some(word))) } else { Err(Failure::at(&word)) };
+            }
+        }
+    }
+    Ok(words.run(None))
+}
+
+impl Arguments<'_> {
+    fn run(self, octree: Option<String>) -> Scan {
+        Scan::Run { octree, words: self.read }
+    }
+
+    /// The next word where `@FILE` and `$VARIABLE` stand for words.
+    fn expanded(&mut self) -> Result<Option<String>, Failure> {
+        while let Some(word) = self.rest.pop_front() {
+            let found = if let Some(file) = word.strip_prefix('@') {
+                self.outside.words(file)?
+            } else if let Some(name) = word.strip_prefix('$') {
+                // What Radiance says of an unset variable, stale error text and all.
+                let unset = || Failure::system(format!("cannot expand '{word}'"), &missing());
+                let value = self.outside.variable(name).ok_or_else(unset)?;
+                split_words(value.as_bytes()).map(|w| String::from_utf8_lossy(w).into_owned()).collect()
+            } else {
+                self.read.push(word.clone());
+                return Ok(Some(word));
+            };
+            for word in found.into_iter().take(WORD_LIMIT).rev() {
+                self.rest.push_front(word);
+            }
+        }
+        Ok(None)
+    }
+
+    /// The next word as it stands; an error at `option` if there is none.
+    fn text(&mut self, option: &str) -> Result<String, Failure> {
+        let word = self.rest.pop_front().filter(|w| is_text(w)).ok_or_else(|| Failure::at(option))?;
+        self.read.push(word.clone());
+        Ok(word)
+    }
+
+    fn real(&mut self, option: &str) -> Result<f64, Failure> {
+        real(&self.text(option)?).ok_or_else(|| Failure::at(option))
+    }
+
+    fn integer(&mut self, option: &str) -> Result<i32, Failure> {
+        integer(&self.text(option)?).ok_or_else(|| Failure::at(option))
+    }
+
+    /// Reads one option with its values.
+    fn option<S>(&mut self, word: &str, table: &[Row<S>], settings: &mut S) -> Result<(), Failure> {
+        let name = &word[1..];
+        for row in table {
+            let Some(tail) = name.strip_prefix(row.flag) else { continue };
+            match (&row.place, tail.chars().next()) {
+                (Place::Switch(at), Some('+' | '1')) => *at(settings) = true,
+                (Place::Switch(at), Some('-' | '0')) => *at(settings) = false,
+                (Place::Switch(at), None) => *at(settings) = !*at(settings),
+                (Place::Glued(fits, act), _) if fits(tail) => act(settings, tail)?,
+                (Place::Switch(_) | Place::Glued(..), _) | (_, Some(_)) => continue,
+                (Place::Bare(act), None) => act(settings),
+                (Place::Integer(at), None) => *at(settings) = self.integer(word)?,
+                (Place::Whole(act), None) => act(settings, self.integer(word)?)?,
+                (Place::Seed(at), None) => *at(settings) = self.text(word)?.parse().map_err(|_| Failure::at(word))?,
+                (Place::Real(at), None) => *at(settings) = self.real(word)?,
+                (Place::Vector(at), None) => {
+                    let (x, y, z) = (self.real(word)?, self.real(word)?, self.real(word)?);
+                    *at(settings) = ambit_base::DVec3::new(x, y, z);
+                }
+                (Place::Colour(at), None) => {
+                    let (r, g, b) = (self.real(word)?, self.real(word)?, self.real(word)?);
+                    *at(settings) = ambit_base::DVec3::new(r, g, b).as_vec3();
+                }
+                (Place::Reals(count, act), None) => {
+                    let numbers = (0..*count).map(|_| self.real(word)).collect::<Result<Vec<f64>, Failure>>()?;
+                    act(settings, &numbers)?;
+                }
+                (Place::Text(at), None) => *at(settings) = Some(self.text(word)?),
+                (Place::Word(act), None) => {
+                    let value = self.text(word)?;
+                    act(settings, value, self.outside)?;
+                }
+                (Place::WordAndIntegers(most, act), None) => {
+                    let value = self.text(word)?;
+                    let mut numbers = Vec::new();
+                    while numbers.len() < *most
+                        && let Some(n) = self.rest.front().and_then(|w| integer(w))
+                    {
+                        numbers.push(n);
+                        self.read.extend(self.rest.pop_front());
+                    }
+                    act(settings, value, &numbers)?;
+                }
+            }
+            return Ok(());
+        }
+        Err(Failure::at(word))
+    }
+}
+
+/// Values are printable ASCII and not empty.
+fn is_text(word: &str) -> bool {
+    !word.is_empty() && word.bytes().all(|b| (b' '..=b'~').contains(&b))
+}
+
+fn missing() -> std::io::Error {
+    std::io::Error::from(rustix::io::Errno::NOENT)
+}

@@ -1,0 +1,92 @@
+//! Signals: most end the program with status 3, after a message and with its files whole; SIGCONT asks for a report.
+
+use signal_hook::consts::{SIGALRM, SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGXCPU, SIGXFSZ};
+use signal_hook::iterator::Signals as Stream;
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// How long a program may take to close its files after a signal; then it ends all the same.
+const PATIENCE: Duration = Duration::from_secs(15);
+
+/// How often it is looked whether the program has come to its end.
+const GLANCE: Duration = Duration::from_millis(20);
+
+/// A signal that ends the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Caught(i32);
+
+impl Caught {
+    /// The name in the message `signal - NAME`.
+    pub fn name(self) -> &'static str {
+        match self.0 {
+            SIGINT => "Interrupt",
+            SIGHUP => "Hangup",
+            SIGTERM => "Terminate",
+            SIGALRM => "Alarm clock",
+            SIGXCPU => "CPU limit exceeded",
+            SIGXFSZ => "File size exceeded",
+            _ => "Unknown",
+        }
+    }
+}
+
+/// The signals of this process.
+#[derive(Clone, Debug)]
+pub struct Signals {
+    ended: Arc<AtomicBool>,
+}
+
+impl Signals {
+    /// Starts to watch. `on_end` is called from another thread for the first signal that ends the program: it prints
+    /// the message and asks the work to stop; the program then has 15 seconds to close its files and exit, before it
+    /// is ended with status 3. A second signal ends it at once with the signal's number. `on_report` is called for
+    /// SIGCONT.
+    ///
+    /// Signals that the parent had ignored stay ignored.
+    ///
+    /// # Errors
+    /// If the system refuses to hand out signals.
+    pub fn watch(on_end: impl Fn(Caught) + Send + 'static, on_report: impl Fn() + Send + 'static) -> io::Result<Self> {
+        let ignored = ignored_signals();
+        let wanted = [SIGINT, SIGHUP, SIGTERM, SIGALRM, SIGXCPU, SIGXFSZ, SIGCONT];
+        let mut stream = Stream::new(wanted.into_iter().filter(|s| ignored & (1 << (s - 1)) == 0))?;
+        let ended = Arc::new(AtomicBool::new(false));
+        let done = Arc::clone(&ended);
+        thread::Builder::new().name("signals".into()).spawn(move || {
+            for signal in stream.forever() {
+                if signal == SIGCONT {
+                    on_report();
+                } else {
+                    on_end(Caught(signal));
+                    let end = Instant::now() + PATIENCE;
+                    while Instant::now() < end && !done.load(Ordering::Acquire) {
+                        if let Some(second) = stream.pending().find(|&s| s != SIGCONT) {
+                            std::process::exit(second);
+                        }
+                        thread::sleep(GLANCE);
+                    }
+                    if !done.load(Ordering::Acquire) {
+                        std::process::exit(3);
+                    }
+                    return;
+                }
+            }
+        })?;
+        Ok(Self { ended })
+    }
+
+    /// Tells the watcher that the program ends by itself now.
+    pub fn finish(&self) {
+        self.ended.store(true, Ordering::Release);
+    }
+}
+
+/// The mask of the signals that were ignored when the program started, where `/proc` tells.
+fn ignored_signals() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap_or("0");
+    u64::from_str_radix(mask.trim(), 16).unwrap_or(0)
+}
