@@ -1,0 +1,14 @@
+//! From pixels to rays and back: which pixels of a picture are traced and which interpolated, the camera, and the
+//! sources too small for the pixels.
+
+mod camera;
+mod lattice;
+mod order;
+mod sampler;
+mod slab;
+#[cfg(test)]
+mod tests;
+
+pub use camera::{Camera, Lens};
+pub use order::{Batches, hilbert_index};
+pub use sampler::{Band, Order, Pixel, PixelRequest, Sampler};
