@@ -1,0 +1,248 @@
+"""The comparison with real Radiance: see `run` beside this file, which starts it.
+
+Checks, one line of the table each:
+  NAME direct        picture without interreflection, nothing random: pixel by pixel
+  NAME cached        picture with the irradiance cache: mean, and RMS error against a converged picture of Radiance's
+  NAME sensors       irradiance at the scene's sensors: mean, and RMS error against converged values
+  NAME octree        octrees of either side, frozen or not, read by both: the same answers
+  NAME ambient       ambient files of either side, continued by the other
+  NAME lookamb       our lookamb and theirs print both sides' ambient files alike
+"""
+
+import concurrent.futures
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import pictures
+import scenes
+from scenes import ROOT, Programs
+
+WORK = Path(os.environ["AMBIT_WORK"])
+REFERENCES = WORK / "references"
+SIZE = 48
+BOXES = 12
+
+# Nothing random: jitter off, sharp highlights, every shadow tested.
+DIRECT = "-ab 0 -av .1 .1 .1 -dj 0 -pj 0 -ps 1 -ss 0 -st 1e-4 -dt 0 -dc 1 -ds .1 -u-".split()
+CACHED = "-ab 2 -aa .2 -ar 32 -ad 128 -as 32 -dj 0 -pj 0 -ps 1 -ds .1 -lw 1e-4 -lr 6".split()
+# Every hemisphere sampled anew: noisy in one pixel, not in a box of sixteen pixels, and exactly two bounces. The cache adds
+# some of the light of later bounces, in Radiance, too; hence a mean between theirs and the converged one is good.
+CONVERGED = "-ab 2 -aa 0 -ad 36 -dj 0 -pj 0 -ps 1 -ds .1 -lw 1e-5 -lr 6".split()
+CONVERGED_SENSORS = "-ab 2 -aa 0 -ad 1024 -dj 0 -ds .1 -lw 1e-5 -lr 6 -u-".split()
+CACHED_SENSORS = "-ab 2 -aa .15 -ar 32 -ad 400 -as 100 -dj 0 -ds .1 -lw 1e-4 -lr 6 -u-".split()
+
+# A converged picture that takes longer is given up; the cached pictures are then compared with each other.
+PATIENCE = 120
+
+# Greatest relative difference of means.
+MEAN = 0.01
+# Ours may err by this much more than theirs: part of the error that both have, and what the noise of 12 x 12 boxes does.
+WORSE, NOISE = 1.15, 0.004
+
+
+@dataclass
+class Line:
+    """One line of the table."""
+
+    check: str
+    verdict: str
+    ours: str = ""
+    theirs: str = ""
+    note: str = ""
+
+
+def percent(x):
+    return f"{100 * x:.2f} %"
+
+
+def folder(*parts):
+    path = WORK.joinpath(*parts)
+    shutil.rmtree(path, ignore_errors=True)
+    path.mkdir(parents=True)
+    return path
+
+
+def direct(scene, ours, theirs):
+    check = f"{scene.name} direct"
+    a, b = (pictures.read(scene.picture(s, folder(s.name, scene.name, "direct"), DIRECT, SIZE)) for s in (ours, theirs))
+    if a.shape != b.shape:
+        return Line(check, "FAILS", note=f"sizes {a.shape} and {b.shape}")
+    # RGBE keeps 8 bits: one step of the exponent's largest channel is up to 1/128 of it, in either picture.
+    step = np.maximum(a.max(axis=2), b.max(axis=2)) / 64
+    differ = (np.abs(a - b).max(axis=2) > step + 1e-6 * b.mean()).mean()
+    mean = abs(a.mean() / b.mean() - 1) if b.mean() > 0 else a.mean()
+    good = differ <= 0.005 and mean <= 0.003
+    note = f"{percent(differ)} of the pixels differ, means by {percent(mean)}"
+    return Line(check, "agrees" if good else "FAILS", note=note)
+
+
+def judge(check, a, b, reference):
+    """Verdict over values of ours and theirs; the mean may lie between theirs and the converged one."""
+    if not np.isfinite(a).all():
+        return Line(check, "FAILS", note="not finite")
+    if reference is None:
+        error = abs(a.mean() / b.mean() - 1)
+        good = error <= 2 * MEAN
+        return Line(check, "agrees" if good else "FAILS", note=f"no converged one; means differ by {percent(error)}, RMS {percent(pictures.rms(a, b))}")
+    ends = sorted([b.mean(), reference.mean()])
+    outside = max(ends[0] - a.mean(), a.mean() - ends[1], 0) / reference.mean()
+    mine, other = pictures.rms(a, reference), pictures.rms(b, reference)
+    good = outside <= MEAN and mine <= WORSE * other + NOISE
+    show = lambda x, e: f"mean {100 * (x.mean() / reference.mean() - 1):+.2f} %, RMS {percent(e)}"
+    return Line(check, "agrees" if good else "FAILS", show(a, mine), show(b, other))
+
+
+def converged(name, make):
+    """The array that make() returns, kept from run to run; None if it takes too long."""
+    path = REFERENCES / (name.replace("/", "-") + ".npy")
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            result = make()
+        except subprocess.TimeoutExpired:
+            result = np.zeros(0)
+        np.save(path, result)
+    result = np.load(path)
+    return result if result.size else None
+
+
+def cached(scene, ours, theirs):
+    check = f"{scene.name} cached"
+    get = lambda side, kind, options, patience: pictures.boxes(
+        pictures.read(scene.picture(side, folder(side.name, scene.name, kind), options, SIZE, patience)), BOXES)
+    reference = converged(check, lambda: get(theirs, "converged", CONVERGED, PATIENCE))
+    a, b = (get(side, "cached", CACHED, 600) for side in (ours, theirs))
+    return judge(check, a, b, reference)
+
+
+def numbers(text):
+    return np.array([[float(w) for w in line.split()] for line in text.decode().splitlines()])
+
+
+def sensors(scene, ours, theirs):
+    check = f"{scene.name} sensors"
+    rays = scene.sensors.read_bytes()
+    def get(side, options, patience=600):
+        octree = scene.octree(side, folder(side.name, scene.name, "sensors") / "scene.oct")
+        return numbers(side.run("rtrace", ["-h", "-I", *options, octree], scene.folder, rays, timeout=patience))
+    reference = converged(check, lambda: get(theirs, CONVERGED_SENSORS, PATIENCE))
+    return judge(check, get(ours, CACHED_SENSORS), get(theirs, CACHED_SENSORS), reference)
+
+
+def octree(scene, ours, theirs):
+    check, work = f"{scene.name} octree", folder("exchange", scene.name, "octree")
+    rays = scene.sensors.read_bytes()
+    worst = 0.0
+    for frozen in (True, False):
+        files = {side.name: scene.octree(side, work / f"{side.name}{frozen}.oct", frozen) for side in (ours, theirs)}
+        for reader in (ours, theirs):
+            answers = []
+            for path in files.values():
+                out = reader.run("rtrace", ["-h", "-I", *"-ab 0 -dj 0 -dt 0 -ds .1 -u-".split(), path], scene.folder, rays)
+                answers.append(numbers(out))
+            a, b = answers
+            if a.shape != b.shape:
+                return Line(check, "FAILS", note=f"{reader.name} answers {a.shape} and {b.shape}")
+            worst = max(worst, float((np.abs(a - b) / (np.abs(b) + 1e-3 * b.mean())).max()))
+    return Line(check, "agrees" if worst <= 1e-4 else "FAILS", note=f"largest difference {percent(worst)}")
+
+
+def records(side, path):
+    return numbers(side.run("lookamb", ["-h", "-d", path], path.parent))
+
+
+def ambient(scene, ours, theirs):
+    """Each side makes a file; the other continues it: it must use the records and add hardly any."""
+    check, work = f"{scene.name} ambient", folder("exchange", scene.name, "ambient")
+    view, lines, good = scene.folder / scene.views[0], [], True
+    octrees = {s.name: scene.octree(s, work / f"{s.name}.oct") for s in (ours, theirs)}
+    def render(side, file, out):
+        arguments = ["-vf", view, "-x", SIZE, "-y", SIZE, *CACHED, "-af", file, octrees[side.name]]
+        side.run("rpict", arguments, scene.folder, out=work / out)
+        return pictures.read(work / out)
+    for maker, user in ((ours, theirs), (theirs, ours)):
+        file = work / f"{maker.name}.amb"
+        made = render(maker, file, f"{maker.name}-made.hdr")
+        before = len(records(theirs, file))
+        shutil.copy(file, work / "again.amb")
+        render(maker, work / "again.amb", "again.hdr")
+        own = len(records(theirs, work / "again.amb")) / before - 1
+        used = render(user, file, f"{user.name}-used.hdr")
+        added = len(records(theirs, file)) / before - 1
+        mean = used.mean() / made.mean() - 1
+        # Whoever continues may add what the maker itself would add in a second run, and a little.
+        good &= added <= own + 0.10 and abs(mean) <= MEAN and before > 20
+        lines.append(f"{user.name} continue {maker.name}: {before} records, {percent(added)} more (itself {percent(own)}), mean {100 * mean:+.2f} %")
+    return Line(check, "agrees" if good else "FAILS", note="; ".join(lines))
+
+
+def lookamb(scene, ours, theirs):
+    check, work = f"{scene.name} lookamb", folder("exchange", scene.name, "lookamb")
+    for maker in (ours, theirs):
+        file = work / f"{maker.name}.amb"
+        arguments = ["-h", "-I", *"-ab 1 -aa .2 -ar 32 -ad 64".split(), "-af", file, scene.octree(maker, work / "s.oct")]
+        maker.run("rtrace", arguments, scene.folder, scene.sensors.read_bytes())
+        for flags in (["-h"], ["-h", "-d"]):
+            a, b = (side.run("lookamb", [*flags, file], work).decode().split() for side in (ours, theirs))
+            if len(a) != len(b) or not b:
+                return Line(check, "FAILS", note=f"{maker.name}' file {flags}: {len(a)} and {len(b)} words")
+            for x, y in zip(a, b):
+                # The last digit may be rounded either way.
+                if x != y and (re.search("[a-z:]", x.lower().replace("e", "")) or abs(float(x) - float(y)) > 2e-6 * (1 + abs(float(y)))):
+                    return Line(check, "FAILS", note=f"{maker.name}' file {flags}: `{x}` and `{y}`")
+    return Line(check, "agrees")
+
+
+def known_differences():
+    """Checks that known-differences.md lists: lines `| NAME check | reason |`."""
+    path = ROOT / "known-differences.md"
+    text = path.read_text() if path.exists() else ""
+    return {m[1]: m[2] for m in re.finditer(r"^\| `(\S+ \w+)` \| (.+?) \|$", text, re.M)}
+
+
+def main():
+    words = sys.argv[1:]
+    minutes = float(words[words.index("--minutes") + 1]) if "--minutes" in words else 20
+    if "--minutes" in words:
+        del words[words.index("--minutes"):words.index("--minutes") + 2]
+    ours, theirs = scenes.sides(os.environ["AMBIT_TOOLS_DIR"], WORK.parent / "oracle")
+    bundled, outside = scenes.bundled(), scenes.outside()
+    jobs = [(f, s) for s in bundled for f in (octree, lookamb, direct, sensors, cached)]
+    jobs += [(ambient, s) for s in bundled if s.name in ("room", "cornell", "optics")]
+    jobs += [(direct, s) for s in outside] + [(cached, s) for s in outside]
+    name = lambda job: f"{job[1].name} {job[0].__name__}"
+    jobs = [j for j in jobs if not words or any(name(j).startswith(w) for w in words)]
+    known, end = known_differences(), time.monotonic() + 60 * minutes
+
+    def one(job):
+        if time.monotonic() > end:
+            return Line(name(job), "not reached")
+        start = time.monotonic()
+        try:
+            line = job[0](job[1], ours, theirs)
+        except (RuntimeError, ValueError, OSError, subprocess.TimeoutExpired) as error:
+            line = Line(name(job), "FAILS", note=str(error)[:160])
+        if line.verdict == "FAILS" and line.check in known:
+            line.verdict = "known"
+        print(f"{line.verdict:12}{line.check:38}{line.ours} {line.theirs} {line.note}  [{time.monotonic() - start:.0f} s]", flush=True)
+        return line
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        table = list(pool.map(one, jobs))
+    counts = {v: sum(l.verdict == v for l in table) for v in ("agrees", "known", "FAILS", "not reached")}
+    text = "| check | verdict | ours | theirs | |\n|---|---|---|---|---|\n"
+    text += "".join(f"| {l.check} | {l.verdict} | {l.ours} | {l.theirs} | {l.note} |\n" for l in table)
+    (WORK / "table.md").write_text(text)
+    print("conformance: " + ", ".join(f"{n} {v}" for v, n in counts.items()) + f"; table in {WORK / 'table.md'}")
+    sys.exit(1 if counts["FAILS"] or not table else 0)
+
+
+main()
