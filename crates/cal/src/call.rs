@@ -49,12 +49,12 @@ impl<'l> Emitter<'l> {
         };
         match self.bindings[id] {
             Binding::Name(entry) => self.variable(entry),
-            Binding::Argument(slot) => self.code.push(Op::Argument(slot)),
-            Binding::Lazy { slot, label } => self.code.push(Op::Lazy { slot, label }),
-            Binding::Once { slot, done: true, .. } => self.code.push(Op::Kept(slot)),
+            Binding::Argument(slot) => self.op(Op::Argument(slot)),
+            Binding::Lazy { slot, label } => self.op(Op::Lazy { slot, label }),
+            Binding::Once { slot, done: true, .. } => self.op(Op::Kept(slot)),
             Binding::Once { expr, environment, slot, .. } if self.level < LEVELS => {
                 self.value(expr, environment);
-                self.code.push(Op::Keep(slot));
+                self.op(Op::Keep(slot));
                 self.bindings[id] = Binding::Once { expr, environment, slot, done: true };
             }
             Binding::Inline(expr, environment) if self.level < LEVELS => self.value(expr, environment),
@@ -125,15 +125,15 @@ impl<'l> Emitter<'l> {
             shapes.push(Shape::Passed);
             passed += 1;
             if let Expr::Number(value) = argument {
-                self.code.push(Op::PassNumber(*value));
+                self.op(Op::PassNumber(*value));
             } else {
                 let label = self.label();
                 self.arguments.push(Argument { expr: argument, environment, label });
-                self.code.push(Op::PassLater(label));
+                self.op(Op::PassLater(label));
             }
         }
         let label = self.instance((entry, shapes));
-        self.code.push(Op::Call { label, count: passed });
+        self.op(Op::Call { label, count: passed });
     }
 
     fn instance(&mut self, key: Instance) -> u32 {
@@ -217,9 +217,9 @@ impl<'l> Emitter<'l> {
             return self.fault(Fault::TooFewArguments(function.name().into()));
         }
         let list = &list[..arity];
-        let clear = list.iter().all(|argument| self.is_quiet(argument, environment));
+        let clear = list.iter().all(|argument| self.is_calm(argument, environment));
         if !clear {
-            self.code.push(Op::Clear);
+            self.op(Op::Clear);
         }
         if function == Builtin::Atan2 {
             // The second argument goes first, and so lies deeper.
@@ -230,7 +230,7 @@ impl<'l> Emitter<'l> {
                 self.value(argument, environment);
             }
         }
-        self.code.push(match arity {
+        self.op(match arity {
             _ if variadic => Op::Extreme { max: function == Builtin::Max, count: arity as u32, clear },
             1 => Op::Unary { function, clear },
             _ => Op::Native { function, clear },
@@ -239,19 +239,22 @@ impl<'l> Emitter<'l> {
 
     /// `if(c,a,b)`.
     fn choice(&mut self, list: &'l [Expr], environment: Option<usize>) {
-        let clear = self.is_quiet(&list[0], environment);
+        let clear = self.is_calm(&list[0], environment);
+        let harmless = clear && list.len() >= 3 && list[1..3].iter().all(|branch| self.is_finite(branch, environment));
         if !clear {
-            self.code.push(Op::Clear);
+            self.op(Op::Clear);
         }
         self.value(&list[0], environment);
         let (otherwise, end) = (self.label(), self.label());
-        self.code.push(Op::Unless { label: otherwise, clear });
+        self.op(Op::Unless { label: otherwise, clear });
         self.branch(list.get(1), Builtin::If, environment);
-        self.code.push(Op::Jump(end));
+        self.op(Op::Jump(end));
         self.place(otherwise);
         self.branch(list.get(2), Builtin::If, environment);
         self.place(end);
-        self.code.push(Op::Finish(Builtin::If));
+        if !harmless {
+            self.op(Op::Finish(Builtin::If));
+        }
     }
 
     fn branch(&mut self, argument: Option<&'l Expr>, function: Builtin, environment: Option<usize>) {
@@ -264,18 +267,18 @@ impl<'l> Emitter<'l> {
     /// `select(i,a1,…)`: a table of jumps follows the operation.
     fn select(&mut self, list: &'l [Expr], environment: Option<usize>) {
         let choices = &list[1..];
-        self.code.push(Op::Clear);
+        self.op(Op::Clear);
         self.value(&list[0], environment);
         let end = self.label();
-        self.code.push(Op::Select { count: choices.len() as u32, end });
+        self.op(Op::Select { count: choices.len() as u32, end });
         let labels: Vec<u32> = choices.iter().map(|_| self.label()).collect();
         self.code.extend(labels.iter().map(|label| Op::Jump(*label)));
         for (label, choice) in labels.into_iter().zip(choices) {
             self.place(label);
             self.value(choice, environment);
-            self.code.push(Op::Jump(end));
+            self.op(Op::Jump(end));
         }
         self.place(end);
-        self.code.push(Op::Finish(Builtin::Select));
+        self.op(Op::Finish(Builtin::Select));
     }
 }

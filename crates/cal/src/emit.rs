@@ -20,7 +20,7 @@ use crate::error::Fault;
 use crate::expr::{Callee, Definition, Expr};
 use crate::library::{Host, Library};
 use crate::names::EntryId;
-use crate::op::{Op, resolve};
+use crate::op::{Op, fused, resolve};
 use crate::program::Program;
 
 /// Names that only stand for other names are followed this far.
@@ -29,7 +29,8 @@ const ALIASES: u32 = 8;
 /// Compiles an expression.
 pub(crate) fn expression(library: &Library, root: &Expr) -> Program {
     let mut emitter = Emitter::new(library);
-    emitter.body(root, None, 0, Op::Halt);
+    let start = emitter.label();
+    emitter.body(start, root, None, 0, Op::Halt);
     while let Some(pending) = emitter.bodies.pop() {
         emitter.subroutine(pending);
     }
@@ -100,6 +101,8 @@ pub(crate) struct Emitter<'l> {
     pub(crate) library: &'l Library,
     pub(crate) code: Vec<Op>,
     pub(crate) addresses: Vec<u32>,
+    /// Where the last label was placed.
+    joint: usize,
     pub(crate) environments: Vec<Environment>,
     pub(crate) bindings: Vec<Binding<'l>>,
     pub(crate) variables: HashMap<EntryId, u32>,
@@ -120,6 +123,7 @@ impl<'l> Emitter<'l> {
             library,
             code: Vec::new(),
             addresses: Vec::new(),
+            joint: 0,
             environments: Vec::new(),
             bindings: Vec::new(),
             variables: HashMap::new(),
@@ -134,33 +138,40 @@ impl<'l> Emitter<'l> {
         }
     }
     /// Writes the code of one frame: an expression, its end, and the arguments it passes.
-    fn body(&mut self, expr: &'l Expr, environment: Option<usize>, arguments: u32, end: Op) {
+    fn body(&mut self, label: u32, expr: &'l Expr, environment: Option<usize>, arguments: u32, end: Op) {
+        self.place(label);
         let enter = self.code.len();
-        self.code.push(Op::Enter(0));
+        self.op(Op::Enter(0));
         self.slots = arguments;
         self.value(expr, environment);
-        self.code.push(end);
+        self.op(end);
         while let Some(pending) = self.arguments.pop() {
             self.place(pending.label);
             self.value(pending.expr, pending.environment);
-            self.code.push(Op::ReturnKeep);
+            self.op(Op::ReturnKeep);
         }
         self.code[enter] = Op::Enter(self.slots);
+        if self.slots == 0 {
+            self.addresses[label as usize] += 1;
+        }
     }
 
     fn subroutine(&mut self, pending: Pending) {
         let library = self.library;
         match pending {
             Pending::Variable(entry, label) => {
-                self.place(label);
                 let end = Op::ReturnVariable(entry);
                 match &library.names.entry(entry).definition {
-                    Some(definition) if definition.parameters.is_none() => self.body(&definition.body, None, 0, end),
-                    _ => self.fault(Fault::UndefinedVariable(library.names.entry(entry).name.clone())),
+                    Some(definition) if definition.parameters.is_none() => {
+                        self.body(label, &definition.body, None, 0, end);
+                    }
+                    _ => {
+                        self.place(label);
+                        self.fault(Fault::UndefinedVariable(library.names.entry(entry).name.clone()));
+                    }
                 }
             }
             Pending::Instance((entry, shapes), label) => {
-                self.place(label);
                 let mut passed = 0;
                 let mut bindings = Vec::new();
                 for shape in shapes {
@@ -175,7 +186,7 @@ impl<'l> Emitter<'l> {
                 }
                 let Some(definition) = self.function(entry) else { return };
                 let environment = self.environment(Environment { function: entry, bindings, caller: None });
-                self.body(&definition.body, Some(environment), passed, Op::Return);
+                self.body(label, &definition.body, Some(environment), passed, Op::Return);
             }
         }
     }
@@ -185,8 +196,22 @@ impl<'l> Emitter<'l> {
         self.addresses.len() as u32 - 1
     }
 
+    /// The label stands for what is written next.
     pub(crate) fn place(&mut self, label: u32) {
         self.addresses[label as usize] = self.code.len() as u32;
+        self.joint = self.code.len();
+    }
+
+    /// Writes an operation, into one with that before it if it can and if no jump leads between them.
+    pub(crate) fn op(&mut self, op: Op) {
+        if self.code.len() > self.joint
+            && let Some(last) = self.code.last_mut()
+            && let Some(one) = fused(*last, op)
+        {
+            *last = one;
+        } else {
+            self.code.push(op);
+        }
     }
 
     pub(crate) fn slot(&mut self) -> u32 {
@@ -195,7 +220,7 @@ impl<'l> Emitter<'l> {
     }
 
     pub(crate) fn fault(&mut self, fault: Fault) {
-        self.code.push(Op::Fault(self.faults.len() as u32));
+        self.op(Op::Fault(self.faults.len() as u32));
         self.faults.push(fault);
     }
 
@@ -208,16 +233,16 @@ impl<'l> Emitter<'l> {
     pub(crate) fn value(&mut self, expr: &'l Expr, environment: Option<usize>) {
         self.level += 1;
         match expr {
-            Expr::Number(value) => self.code.push(Op::Number(*value)),
+            Expr::Number(value) => self.op(Op::Number(*value)),
             Expr::Channel(index) => self.channel(*index),
             Expr::IllegalChannel => self.fault(Fault::IllegalChannel),
-            Expr::Given(index) => self.code.push(Op::Given(*index)),
+            Expr::Given(index) => self.op(Op::Given(*index)),
             Expr::Name(entry) => self.variable(*entry),
             Expr::Parameter(index) => self.parameter(*index, environment),
             Expr::Call(callee, list) => self.call(*callee, list, environment),
             Expr::Negative(value) => {
                 self.value(value, environment);
-                self.code.push(Op::Negate);
+                self.op(Op::Negate);
             }
             Expr::Sum(list) => self.sum(list, environment),
             Expr::Product(list) => self.product(list, environment),
@@ -228,15 +253,15 @@ impl<'l> Emitter<'l> {
 
     fn channel(&mut self, index: u32) {
         if self.library.host == Host::Calculator {
-            self.code.push(Op::Column(index));
+            self.op(Op::Column(index));
         } else {
             self.channels.insert(index);
-            self.code.push(Op::Channel(index));
+            self.op(Op::Channel(index));
         }
     }
 
     /// Follows a name to something that needs no memory.
-    fn simple(&self, mut entry: EntryId) -> Option<Simple> {
+    pub(crate) fn simple(&self, mut entry: EntryId) -> Option<Simple> {
         for _ in 0..ALIASES {
             let definition = self.library.names.entry(entry).definition.as_ref()?;
             if definition.parameters.is_some() {
@@ -262,11 +287,11 @@ impl<'l> Emitter<'l> {
 
     pub(crate) fn variable(&mut self, entry: EntryId) {
         match self.simple(entry) {
-            Some(Simple::Number(value)) => self.code.push(Op::Number(value)),
+            Some(Simple::Number(value)) => self.op(Op::Number(value)),
             Some(Simple::Channel(index)) => self.channel(index),
             Some(Simple::Real { index, slot }) => {
                 self.reals = true;
-                self.code.push(Op::Real { index, slot });
+                self.op(Op::Real { index, slot });
             }
             None => {
                 let known = self.variables.get(&entry).copied();
@@ -276,7 +301,7 @@ impl<'l> Emitter<'l> {
                     self.bodies.push(Pending::Variable(entry, label));
                     label
                 });
-                self.code.push(Op::Variable { slot: entry, label });
+                self.op(Op::Variable { slot: entry, label });
             }
         }
     }
@@ -285,15 +310,15 @@ impl<'l> Emitter<'l> {
         for (at, (minus, term)) in list.iter().enumerate() {
             let fused = if at == 0 { None } else { self.leaf(term, environment) };
             match fused {
-                Some(Op::Number(value)) => self.code.push(Op::AddNumber(if *minus { -value } else { value })),
+                Some(Op::Number(value)) => self.op(Op::AddNumber(if *minus { -value } else { value })),
                 Some(Op::Channel(index)) => {
                     self.channels.insert(index);
-                    self.code.push(if *minus { Op::SubtractChannel(index) } else { Op::AddChannel(index) });
+                    self.op(if *minus { Op::SubtractChannel(index) } else { Op::AddChannel(index) });
                 }
                 _ => {
                     self.value(term, environment);
                     if at > 0 {
-                        self.code.push(if *minus { Op::Subtract } else { Op::Add });
+                        self.op(if *minus { Op::Subtract } else { Op::Add });
                     }
                 }
             }
@@ -304,32 +329,46 @@ impl<'l> Emitter<'l> {
     fn product(&mut self, list: &'l [(bool, Expr)], environment: Option<usize>) {
         let mut guards = Vec::new();
         for (_, divisor) in list.iter().rev().filter(|(over, _)| *over) {
-            self.value(divisor, environment);
-            let label = self.label();
-            self.code.push(Op::Guard(label));
-            guards.push(label);
+            if self.safe_divisor(divisor, environment).is_none() {
+                self.value(divisor, environment);
+                let label = self.label();
+                self.op(Op::Guard(label));
+                guards.push(label);
+            }
         }
         for (at, (over, factor)) in list.iter().enumerate() {
             if *over {
-                self.code.push(Op::Divide);
-                let label = guards.pop().expect("one guard was made for each divisor");
-                self.place(label);
+                if let Some(value) = self.safe_divisor(factor, environment) {
+                    self.op(Op::DivideNumber(value));
+                } else {
+                    self.op(Op::Divide);
+                    let label = guards.pop().expect("one guard was made for each unsafe divisor");
+                    self.place(label);
+                }
                 continue;
             }
             let fused = if at == 0 { None } else { self.leaf(factor, environment) };
             match fused {
-                Some(Op::Number(value)) => self.code.push(Op::MultiplyNumber(value)),
+                Some(Op::Number(value)) => self.op(Op::MultiplyNumber(value)),
                 Some(Op::Channel(index)) => {
                     self.channels.insert(index);
-                    self.code.push(Op::MultiplyChannel(index));
+                    self.op(Op::MultiplyChannel(index));
                 }
                 _ => {
                     self.value(factor, environment);
                     if at > 0 {
-                        self.code.push(Op::Multiply);
+                        self.op(Op::Multiply);
                     }
                 }
             }
+        }
+    }
+
+    /// The divisor's value, if it is a number other than 0.
+    fn safe_divisor(&self, divisor: &'l Expr, environment: Option<usize>) -> Option<f64> {
+        match self.leaf(divisor, environment) {
+            Some(Op::Number(value)) if value != 0.0 => Some(value),
+            _ => None,
         }
     }
 
@@ -354,37 +393,18 @@ impl<'l> Emitter<'l> {
 
     fn power(&mut self, base: &'l Expr, exponent: &'l Expr, environment: Option<usize>) {
         if let Some(Op::Number(exponent)) = self.leaf(exponent, environment)
-            && self.is_quiet(base, environment)
+            && self.is_calm(base, environment)
         {
             self.value(base, environment);
-            self.code.push(if exponent == 2.0 { Op::Square } else { Op::PowerNumber(exponent) });
+            self.op(if exponent == 2.0 { Op::Square } else { Op::PowerNumber(exponent) });
             return;
         }
-        let clear = self.is_quiet(base, environment) && self.is_quiet(exponent, environment);
+        let clear = self.is_calm(base, environment) && self.is_calm(exponent, environment);
         if !clear {
-            self.code.push(Op::Clear);
+            self.op(Op::Clear);
         }
         self.value(exponent, environment);
         self.value(base, environment);
-        self.code.push(Op::Power { clear });
-    }
-
-    /// Whether evaluating `expr` leaves the error flag alone for certain.
-    pub(crate) fn is_quiet(&self, expr: &'l Expr, environment: Option<usize>) -> bool {
-        match expr {
-            Expr::Number(_) | Expr::Channel(_) | Expr::IllegalChannel | Expr::Given(_) => true,
-            Expr::Name(entry) => matches!(self.simple(*entry), Some(Simple::Number(_) | Simple::Channel(_))),
-            Expr::Negative(value) => self.is_quiet(value, environment),
-            Expr::Sum(list) => list.iter().all(|(_, term)| self.is_quiet(term, environment)),
-            Expr::Product(list) => list.iter().all(|(over, factor)| !over && self.is_quiet(factor, environment)),
-            Expr::Call(..) | Expr::Power(_) => false,
-            Expr::Parameter(index) => match self.binding(*index, environment) {
-                Some(Binding::Once { done: true, .. }) => true,
-                Some(Binding::Inline(expr, environment) | Binding::Once { expr, environment, .. }) => {
-                    !matches!(expr, Expr::Parameter(_)) && self.is_quiet(expr, environment)
-                }
-                _ => false,
-            },
-        }
+        self.op(Op::Power { clear });
     }
 }

@@ -24,6 +24,7 @@
 mod bind;
 mod builtin;
 mod call;
+mod calm;
 mod channel;
 mod embedded;
 mod emit;

@@ -49,9 +49,22 @@ pub(crate) enum Op {
     Negate,
     AddNumber(f64),
     MultiplyNumber(f64),
+    /// Accumulator over a constant that is not 0.
+    DivideNumber(f64),
     AddChannel(u32),
     SubtractChannel(u32),
     MultiplyChannel(u32),
+    AddKept(u32),
+    SubtractKept(u32),
+    MultiplyKept(u32),
+    /// Loads an input plus a number.
+    ChannelPlus(u32, f64),
+    /// Loads an input times a number.
+    ChannelTimes(u32, f64),
+    /// Loads the first input minus the second.
+    ChannelMinusChannel(u32, u32),
+    /// Loads the product of two inputs.
+    ChannelTimesChannel(u32, u32),
     /// Accumulator (base) to the popped exponent. `clear`: the operands cannot have set the flag.
     Power {
         clear: bool,
@@ -115,6 +128,20 @@ pub(crate) enum Op {
     Halt,
     /// Stops with a fault of the program's list.
     Fault(u32),
+}
+
+/// One operation that does the same as these two in turn, if there is one.
+pub(crate) fn fused(first: Op, second: Op) -> Option<Op> {
+    Some(match (first, second) {
+        (Op::Channel(a), Op::AddNumber(b)) | (Op::Number(b), Op::AddChannel(a)) => Op::ChannelPlus(a, b),
+        (Op::Channel(a), Op::MultiplyNumber(b)) | (Op::Number(b), Op::MultiplyChannel(a)) => Op::ChannelTimes(a, b),
+        (Op::Channel(a), Op::SubtractChannel(b)) => Op::ChannelMinusChannel(a, b),
+        (Op::Channel(a), Op::MultiplyChannel(b)) => Op::ChannelTimesChannel(a, b),
+        (Op::Kept(a), Op::Add) => Op::AddKept(a),
+        (Op::Kept(a), Op::Subtract) => Op::SubtractKept(a),
+        (Op::Kept(a), Op::Multiply) => Op::MultiplyKept(a),
+        _ => return None,
+    })
 }
 
 /// Replaces labels by the addresses they were placed at.

@@ -9,7 +9,7 @@ use crate::fractal::fnoise3;
 use crate::noise::{noise3, noise3x, noise3y, noise3z};
 use crate::op::Op;
 use crate::program::Program;
-use crate::scratch::{DONE, Pass, Return, Scratch, Slot, UNSET};
+use crate::scratch::{DONE, Inputs, Pass, Remembered, Return, Scratch, Slot, State, UNSET};
 use crate::source;
 use crate::special::rand;
 
@@ -20,21 +20,36 @@ const DEPTH: usize = 1 << 17;
 pub(crate) fn run(program: &Program, given: &[f64], pass: &mut Pass<'_>) -> Result<f64, Fault> {
     let Pass { scratch, inputs, constant } = pass;
     let (inputs, constant) = (*inputs, *constant);
+    let Scratch { stack: memory, state: s } = &mut **scratch;
     let code = &program.code[..];
-    let s: &mut Scratch = scratch;
-    s.stack.clear();
     s.slots.clear();
     s.returns.clear();
     if s.variables.len() < program.variables as usize {
-        s.variables.resize(program.variables as usize, crate::scratch::Remembered::default());
+        s.variables.resize(program.variables as usize, Remembered::default());
     }
+    let mut stack = memory.as_mut_slice();
+    let mut top = 0_usize;
     let mut at = 0_usize;
     let mut frame = 0_usize;
     let mut acc = 0.0_f64;
     macro_rules! load {
         ($value:expr) => {{
-            s.stack.push(acc);
-            acc = $value;
+            let value = $value;
+            if let Some(place) = stack.get_mut(top) {
+                *place = acc;
+            } else {
+                stack = grow(memory);
+                stack[top] = acc;
+            }
+            top += 1;
+            acc = value;
+        }};
+    }
+    // Every operation that pops follows its loads, so the stack is never empty.
+    macro_rules! pop {
+        () => {{
+            top = top.wrapping_sub(1);
+            stack.get(top).copied().unwrap_or(0.0)
         }};
     }
     macro_rules! channel {
@@ -46,9 +61,9 @@ pub(crate) fn run(program: &Program, given: &[f64], pass: &mut Pass<'_>) -> Resu
         };
     }
     loop {
-        let op = code[at];
+        let op = &code[at];
         at += 1;
-        match op {
+        match *op {
             Op::Number(value) => load!(value),
             Op::Channel(index) => load!(channel!(index)),
             Op::Column(index) => load!(inputs.channels.get(index as usize).copied().unwrap_or(0.0)),
@@ -99,10 +114,10 @@ pub(crate) fn run(program: &Program, given: &[f64], pass: &mut Pass<'_>) -> Resu
                 }
             }
 
-            Op::Add => acc += pop(s),
-            Op::Subtract => acc = pop(s) - acc,
-            Op::Multiply => acc *= pop(s),
-            Op::Divide => acc /= pop(s),
+            Op::Add => acc += pop!(),
+            Op::Subtract => acc = pop!() - acc,
+            Op::Multiply => acc *= pop!(),
+            Op::Divide => acc /= pop!(),
             Op::Guard(label) => {
                 if acc == 0.0 {
                     s.warn(Warning::DivisionByZero);
@@ -114,11 +129,19 @@ pub(crate) fn run(program: &Program, given: &[f64], pass: &mut Pass<'_>) -> Resu
             Op::Negate => acc = -acc,
             Op::AddNumber(value) => acc += value,
             Op::MultiplyNumber(value) => acc *= value,
+            Op::DivideNumber(value) => acc /= value,
+            Op::AddKept(slot) => acc += s.slots[frame + slot as usize].value,
+            Op::SubtractKept(slot) => acc -= s.slots[frame + slot as usize].value,
+            Op::MultiplyKept(slot) => acc *= s.slots[frame + slot as usize].value,
+            Op::ChannelPlus(index, value) => load!(channel!(index) + value),
+            Op::ChannelTimes(index, value) => load!(channel!(index) * value),
+            Op::ChannelMinusChannel(index, other) => load!(channel!(index) - channel!(other)),
+            Op::ChannelTimesChannel(index, other) => load!(channel!(index) * channel!(other)),
             Op::AddChannel(index) => acc += channel!(index),
             Op::SubtractChannel(index) => acc -= channel!(index),
             Op::MultiplyChannel(index) => acc *= channel!(index),
             Op::Power { clear } => {
-                let exponent = pop(s);
+                let exponent = pop!();
                 acc = power(s, acc.powf(exponent), clear);
             }
             Op::PowerNumber(exponent) => acc = power(s, acc.powf(exponent), true),
@@ -128,50 +151,25 @@ pub(crate) fn run(program: &Program, given: &[f64], pass: &mut Pass<'_>) -> Resu
             Op::Unary { function, clear } => {
                 let value = match function {
                     Builtin::Floor => acc.floor(),
-                    Builtin::Ceil => acc.ceil(),
                     Builtin::Sqrt => acc.sqrt(),
-                    Builtin::Exp => acc.exp(),
-                    Builtin::Log => acc.ln(),
-                    Builtin::Log10 => acc.log10(),
-                    Builtin::Sin => acc.sin(),
-                    Builtin::Cos => acc.cos(),
-                    Builtin::Tan => acc.tan(),
-                    Builtin::Asin => acc.asin(),
-                    Builtin::Acos => acc.acos(),
-                    Builtin::Atan => acc.atan(),
-                    Builtin::Rand => rand(acc),
-                    Builtin::Erf => libm::erf(acc),
-                    Builtin::Erfc => libm::erfc(acc),
-                    Builtin::Arg => real(inputs.reals, acc, constant)?,
-                    Builtin::In => column(inputs.channels, acc),
-                    Builtin::SourceTheta => source::theta(ray(inputs.channels)?),
-                    Builtin::SourcePhi => source::phi(ray(inputs.channels)?, acc)?,
-                    _ => return Err(Fault::Unsupported(function.name())),
+                    _ => unary(function, acc, &inputs, constant)?,
                 };
                 acc = finish(s, function, value, clear);
             }
             Op::Native { function, clear } => {
                 let value = match function {
-                    Builtin::Atan2 => acc.atan2(pop(s)),
-                    Builtin::SourceCorr => source::correction(ray(inputs.channels)?, inputs.reals, pop(s), acc)?,
+                    Builtin::Atan2 => acc.atan2(pop!()),
+                    Builtin::SourceCorr => source::correction(ray(inputs.channels)?, inputs.reals, pop!(), acc)?,
                     _ => {
-                        let (z, y) = (acc, pop(s));
-                        let x = pop(s);
-                        match function {
-                            Builtin::Noise3 => noise3(x, y, z),
-                            Builtin::Noise3x => noise3x(x, y, z),
-                            Builtin::Noise3y => noise3y(x, y, z),
-                            Builtin::Noise3z => noise3z(x, y, z),
-                            Builtin::Fnoise3 => fnoise3(x, y, z),
-                            _ => return Err(Fault::Unsupported(function.name())),
-                        }
+                        let y = pop!();
+                        ternary(function, [pop!(), y, acc])?
                     }
                 };
                 acc = finish(s, function, value, clear);
             }
             Op::Extreme { max, count, clear } => {
                 for _ in 1..count {
-                    let other = pop(s);
+                    let other = pop!();
                     acc = if max { other.max(acc) } else { other.min(acc) };
                 }
                 acc = finish(s, if max { Builtin::Max } else { Builtin::Min }, acc, clear);
@@ -184,13 +182,13 @@ pub(crate) fn run(program: &Program, given: &[f64], pass: &mut Pass<'_>) -> Resu
                 if !positive {
                     at = label as usize;
                 }
-                acc = pop(s);
+                acc = pop!();
             }
             Op::Select { count, end } => match selected(acc, count) {
                 Some(0) => (acc, at) = (f64::from(count), end as usize),
                 Some(k) => {
                     at += k as usize - 1;
-                    acc = pop(s);
+                    acc = pop!();
                 }
                 None => {
                     s.flag = Flag::Domain;
@@ -209,7 +207,7 @@ pub(crate) fn run(program: &Program, given: &[f64], pass: &mut Pass<'_>) -> Resu
             }
             Op::Enter(slots) => s.slots.resize(frame + slots as usize, UNSET),
             Op::Return | Op::ReturnVariable(_) => {
-                if let Op::ReturnVariable(slot) = op {
+                if let Op::ReturnVariable(slot) = *op {
                     s.variables[slot as usize].value = acc;
                 }
                 s.slots.truncate(frame);
@@ -230,14 +228,53 @@ pub(crate) fn run(program: &Program, given: &[f64], pass: &mut Pass<'_>) -> Resu
 /// Where a return without a call would go; code never does that.
 const START: Return = Return { address: 0, frame: 0, slot: 0 };
 
-#[inline]
-fn pop(s: &mut Scratch) -> f64 {
-    // Every operation that pops follows its loads, so the stack is never empty.
-    s.stack.pop().unwrap_or(0.0)
+/// Library functions of one argument.
+#[inline(never)]
+fn unary(function: Builtin, x: f64, inputs: &Inputs<'_>, constant: bool) -> Result<f64, Fault> {
+    Ok(match function {
+        Builtin::Ceil => x.ceil(),
+        Builtin::Exp => x.exp(),
+        Builtin::Log => x.ln(),
+        Builtin::Log10 => x.log10(),
+        Builtin::Sin => x.sin(),
+        Builtin::Cos => x.cos(),
+        Builtin::Tan => x.tan(),
+        Builtin::Asin => x.asin(),
+        Builtin::Acos => x.acos(),
+        Builtin::Atan => x.atan(),
+        Builtin::Rand => rand(x),
+        Builtin::Erf => libm::erf(x),
+        Builtin::Erfc => libm::erfc(x),
+        Builtin::Arg => real(inputs.reals, x, constant)?,
+        Builtin::In => column(inputs.channels, x),
+        Builtin::SourceTheta => source::theta(ray(inputs.channels)?),
+        Builtin::SourcePhi => source::phi(ray(inputs.channels)?, x)?,
+        _ => return Err(Fault::Unsupported(function.name())),
+    })
+}
+
+/// Library functions of a point.
+#[inline(never)]
+fn ternary(function: Builtin, [x, y, z]: [f64; 3]) -> Result<f64, Fault> {
+    Ok(match function {
+        Builtin::Noise3 => noise3(x, y, z),
+        Builtin::Noise3x => noise3x(x, y, z),
+        Builtin::Noise3y => noise3y(x, y, z),
+        Builtin::Noise3z => noise3z(x, y, z),
+        Builtin::Fnoise3 => fnoise3(x, y, z),
+        _ => return Err(Fault::Unsupported(function.name())),
+    })
+}
+
+/// Makes the stack twice as high.
+#[cold]
+fn grow(memory: &mut Vec<f64>) -> &mut [f64] {
+    memory.resize((2 * memory.len()).max(64), 0.0);
+    memory
 }
 
 #[inline]
-fn enter(s: &mut Scratch, at: usize, frame: usize, slot: usize) -> Result<(), Fault> {
+fn enter(s: &mut State, at: usize, frame: usize, slot: usize) -> Result<(), Fault> {
     if s.returns.len() >= DEPTH {
         return Err(Fault::TooDeep);
     }
@@ -247,7 +284,7 @@ fn enter(s: &mut Scratch, at: usize, frame: usize, slot: usize) -> Result<(), Fa
 
 /// The end of a library function: its value, or 0 if the flag is set or the value not finite.
 #[inline]
-fn finish(s: &mut Scratch, function: Builtin, value: f64, clear: bool) -> f64 {
+fn finish(s: &mut State, function: Builtin, value: f64, clear: bool) -> f64 {
     if clear || s.flag == Flag::Clear {
         s.flag = Flag::Clear;
         if value.is_finite() {
@@ -262,7 +299,7 @@ fn finish(s: &mut Scratch, function: Builtin, value: f64, clear: bool) -> f64 {
 
 /// The end of a power, likewise.
 #[inline]
-fn power(s: &mut Scratch, value: f64, clear: bool) -> f64 {
+fn power(s: &mut State, value: f64, clear: bool) -> f64 {
     if clear || s.flag == Flag::Clear {
         s.flag = Flag::Clear;
         if value.is_finite() {

@@ -49,7 +49,14 @@ pub(crate) struct Remembered {
 /// The memory that evaluation works in. Nothing is allocated once it has grown to what the programs need.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
+    /// Operands below the accumulator.
     pub(crate) stack: Vec<f64>,
+    pub(crate) state: State,
+}
+
+/// All of it but the stack.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct State {
     pub(crate) slots: Vec<Slot>,
     pub(crate) returns: Vec<Return>,
     pub(crate) variables: Vec<Remembered>,
@@ -57,6 +64,15 @@ pub struct Scratch {
     pub(crate) flag: Flag,
     pub(crate) history: bool,
     warnings: Vec<Warning>,
+}
+
+impl State {
+    #[cold]
+    pub(crate) fn warn(&mut self, warning: Warning) {
+        if self.warnings.len() < WARNINGS {
+            self.warnings.push(warning);
+        }
+    }
 }
 
 impl Scratch {
@@ -69,33 +85,27 @@ impl Scratch {
     /// A scratch in which a variable that refers to itself reads its value of the pass before (`n = n + 1` counts
     /// passes), as in Radiance's single-threaded programs.
     pub fn with_history() -> Self {
-        Self { history: true, ..Self::default() }
+        Self { state: State { history: true, ..State::default() }, ..Self::default() }
     }
 
     /// Begins the evaluation of one primitive on one ray: the clock ticks, so that variables are computed anew, once
     /// each, and the error flag is cleared.
     pub fn pass<'a>(&'a mut self, inputs: Inputs<'a>) -> Pass<'a> {
-        self.clock += 1;
-        self.flag = Flag::Clear;
+        self.state.clock += 1;
+        self.state.flag = Flag::Clear;
         Pass { scratch: self, inputs, constant: false }
     }
 
     /// As [`Self::pass`] where there is no ray: reading one is a fault.
     pub(crate) fn constant_pass(&mut self) -> Pass<'_> {
-        self.clock += 1;
-        self.flag = Flag::Clear;
+        self.state.clock += 1;
+        self.state.flag = Flag::Clear;
         Pass { scratch: self, inputs: Inputs::default(), constant: true }
     }
 
     /// The warnings since the last call, in order.
     pub fn drain_warnings(&mut self) -> impl Iterator<Item = Warning> + '_ {
-        self.warnings.drain(..)
-    }
-
-    pub(crate) fn warn(&mut self, warning: Warning) {
-        if self.warnings.len() < WARNINGS {
-            self.warnings.push(warning);
-        }
+        self.state.warnings.drain(..)
     }
 }
 
@@ -124,11 +134,11 @@ impl Pass<'_> {
     /// What the last operation that touches the error flag left. Radiance's patterns, textures and mixtures have no
     /// effect on a ray if it is set after all their expressions.
     pub fn flag(&self) -> Flag {
-        self.scratch.flag
+        self.scratch.state.flag
     }
 
     /// Clears the error flag.
     pub fn clear_flag(&mut self) {
-        self.scratch.flag = Flag::Clear;
+        self.scratch.state.flag = Flag::Clear;
     }
 }
