@@ -17,7 +17,8 @@ pub(crate) fn theta(ray: &Ray) -> f64 {
 
 /// `source_phi`: azimuth of the emission, in degrees, folded as the luminaire's symmetry (360, 180 or 90) has it.
 pub(crate) fn phi(ray: &Ray, symmetry: f64) -> Result<f64, Fault> {
-    let angle = (-get(ray, Dy)).atan2(-get(ray, Dx)).to_degrees();
+    // Subtracting from 0 leaves no negative zero, so that straight up and down have the azimuth 0.
+    let angle = (0.0 - get(ray, Dy)).atan2(0.0 - get(ray, Dx)).to_degrees();
     let angle = if angle < 0.0 { angle + 360.0 } else { angle };
     let half = if angle < 180.0 { angle } else { 360.0 - angle };
     match (symmetry + 0.5).floor() as i64 {

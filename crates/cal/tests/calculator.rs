@@ -1,5 +1,7 @@
 //! Definitions, functions and folding, as `rcalc` has them, on the record 3 4 5 (function-files.md 17.2 and 6).
 
+use std::fmt::Write;
+
 use ambit_cal::{Host, Inputs, Library, Scratch};
 
 /// The outputs of a program on some records, and its messages; or the message it ends with.
@@ -162,13 +164,13 @@ fn arguments_are_evaluated_when_needed_and_once() {
 fn many_calls_within_each_other_compile_to_bounded_code() {
     let mut text = String::from("f0(x)=x+1;");
     for k in 1..40 {
-        text += &format!("f{k}(x)=if(x,f{}(x)-f{}(x+1),x);", k - 1, k - 1);
+        write!(text, "f{k}(x)=if(x,f{}(x)-f{}(x+1),x);", k - 1, k - 1).unwrap();
     }
     check(&format!("{text}$1=f39(-$1)"), &[-3.0], &[]);
     // Each level selects one of the two calls, so only the size of the code could explode.
     let mut text = String::from("g0(x)=x+1;");
     for k in 1..60 {
-        text += &format!("g{k}(x)=if(x-$1,g{}(x-1),g{}(x+1));", k - 1, k - 1);
+        write!(text, "g{k}(x)=if(x-$1,g{}(x-1),g{}(x+1));", k - 1, k - 1).unwrap();
     }
     let (lines, _) = run(&format!("{text}$1=g59(0)"), &[&[3.0]]).unwrap();
     assert_eq!(lines[0], [4.0]);

@@ -115,6 +115,46 @@ fn the_prelude_has_radiances_values() {
 }
 
 #[test]
+fn the_preludes_frames_follow_the_surface() {
+    let mut library = Library::renderer().unwrap();
+    let mut value = |expression: &str, set: &[(Channel, f64)], reals: &[f64]| {
+        let program = library.compile(expression, &Context::GLOBAL, "").unwrap();
+        let mut channels = [0.0; CHANNELS];
+        for (channel, value) in set {
+            channels[*channel as usize] = *value;
+        }
+        Scratch::new().pass(Inputs { channels: &channels, reals }).eval(&program).unwrap()
+    };
+    // The probe through `-rx 90`.
+    let upright = [(Channel::Px, 8.0), (Channel::Pz, -0.25), (Channel::Ny, 1.0)];
+    assert_eq!((value("U", &upright, &[]), value("V", &upright, &[])), (-8.0, -0.25));
+    // A BRTDfunc on a floor with up vector (.3,.5,.7), ray (.6,.1,-.8): what rtrace printed.
+    let n = 1.01_f64.sqrt();
+    let (x, y, z) = ((Channel::Dx, 0.6 / n), (Channel::Dy, 0.1 / n), (Channel::Dz, -0.8 / n));
+    let floor = [x, y, z, (Channel::NzP, 1.0), (Channel::RdotP, 0.8 / n)];
+    let reals = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.3, 0.5, 0.7];
+    for (expression, printed) in [
+        ("Idx+2", 1.607511),
+        ("Idy+2", 1.539252),
+        ("Idz", 0.7960297),
+        ("Ldx(1,2,3)+5", 7.229482),
+        ("Ldy(1,2,3)+5", 4.828501),
+        ("Ldz(1,2,3)", 3.0),
+    ] {
+        let value = value(expression, &floor, &reals);
+        assert!((value - printed).abs() < 1e-6, "{expression} = {value}, not {printed}");
+    }
+}
+
+#[test]
+fn programs_and_scratches_go_to_other_threads() {
+    fn shared<T: Send + Sync>(_: &T) {}
+    let program = Library::renderer().unwrap().compile("U*A1", &Context::GLOBAL, "").unwrap();
+    shared(&program);
+    shared(&Scratch::new());
+}
+
+#[test]
 fn near_field_functions_have_radiances_values() {
     let reals = [3.0, 4.0, 5.0, 6.0];
     check(&["source_corr(2,1)", "source_theta(0)", "source_phi(360)"], &reals, &[7.5, 143.1301, 180.0]);
