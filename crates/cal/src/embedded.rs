@@ -4,7 +4,6 @@
 /// Name and text of every file.
 pub const EMBEDDED: &[(&str, &str)] = &[
     ("illum.cal", include_str!("../lib/illum.cal")),
-    ("isotrop_sky.cal", include_str!("../lib/isotrop_sky.cal")),
     ("perezlum.cal", include_str!("../lib/perezlum.cal")),
     ("rayinit.cal", include_str!("../lib/rayinit.cal")),
     ("rev.cal", include_str!("../lib/rev.cal")),
