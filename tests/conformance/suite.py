@@ -170,15 +170,15 @@ def ambient(scene, ours, theirs):
         return pictures.read(work / out)
     for maker, user in ((ours, theirs), (theirs, ours)):
         file = work / f"{maker.name}.amb"
-        made = render(maker, file, f"{maker.name}-made.hdr")
+        render(maker, file, f"{maker.name}-made.hdr")
         before = len(records(theirs, file))
         shutil.copy(file, work / "again.amb")
-        render(maker, work / "again.amb", "again.hdr")
+        again = render(maker, work / "again.amb", "again.hdr")
         own = len(records(theirs, work / "again.amb")) / before - 1
         used = render(user, file, f"{user.name}-used.hdr")
         added = len(records(theirs, file)) / before - 1
-        mean = used.mean() / made.mean() - 1
-        # Whoever continues may add what the maker itself would add in a second run, and a little.
+        mean = used.mean() / again.mean() - 1
+        # Whoever continues may add what the maker itself adds in a second run, and a little; the picture is the same.
         good &= added <= own + 0.10 and abs(mean) <= MEAN and before > 20
         lines.append(f"{user.name} continue {maker.name}: {before} records, {percent(added)} more (itself {percent(own)}), mean {100 * mean:+.2f} %")
     return Line(check, "agrees" if good else "FAILS", note="; ".join(lines))

@@ -33,7 +33,7 @@ import scenes  # noqa: E402
 
 LIGHT = "-ab 2 -aa .15 -ar 64 -ad 512 -as 128 -ds .2 -dj .5".split()
 PIXELS = "-ps 1 -pj 0".split()
-CONVERGED = "-ab 2 -aa 0 -ad 64 -ds .05 -dj 0 -lw 1e-5 -ps 1 -pj 0".split()
+CONVERGED = "-ab 2 -aa 0 -ad 9 -ds .1 -dj 0 -lw 1e-5 -ps 1 -pj 0".split()
 BOXES = 32
 
 
@@ -96,8 +96,10 @@ class Bundled:
 def compare(scene, ours, theirs, runs, size, work):
     """One line of the table, and the paired times of the second view if the scene has one."""
     reference = work / "converged.hdr"
-    timed(theirs, scene.arguments(CONVERGED, size // 2), scene.folder, reference)
-    reference = pictures.boxes(pictures.read(reference), BOXES)
+    timed(theirs, scene.arguments(CONVERGED, size), scene.folder, reference)
+    reference = pictures.read(reference)
+    boxes = min(BOXES, *reference.shape[:2])
+    reference = pictures.boxes(reference, boxes)
     times, errors, second = {"ours": [], "theirs": []}, {}, {"ours": [], "theirs": []}
     for run in range(runs):
         # Whoever goes first changes from pair to pair.
@@ -106,7 +108,7 @@ def compare(scene, ours, theirs, runs, size, work):
             cache.unlink(missing_ok=True)
             options = [*LIGHT, *PIXELS, "-af", cache]
             times[side.name].append(timed(side, scene.arguments(options, size), scene.folder, out)[0])
-            errors[side.name] = pictures.rms(pictures.boxes(pictures.read(out), BOXES), reference)
+            errors[side.name] = pictures.rms(pictures.boxes(pictures.read(out), boxes), reference)
             if len(getattr(scene, "views", [])) > 1:
                 second[side.name].append(timed(side, scene.arguments(options, size, 1), scene.folder, out)[0])
     ratio = statistics.median(t / o for o, t in zip(times["ours"], times["theirs"]))
