@@ -1,1 +1,9 @@
-//! The command-line tools of Ambit live in `src/bin`, one program a file.
+//! The command-line tools of Ambit live in `src/bin`, one program a file. What the rendering programs share, and their
+//! parts, is here.
+
+mod colour;
+mod light;
+mod quantity;
+pub mod rpict;
+pub mod rtrace;
+mod session;

@@ -37,13 +37,14 @@ impl Caught {
 #[derive(Clone, Debug)]
 pub struct Signals {
     ended: Arc<AtomicBool>,
+    working: Arc<AtomicBool>,
 }
 
 impl Signals {
     /// Starts to watch. `on_end` is called from another thread for the first signal that ends the program: it prints
-    /// the message and asks the work to stop; the program then has 15 seconds to close its files and exit, before it
-    /// is ended with status 3. A second signal ends it at once with the signal's number. `on_report` is called for
-    /// SIGCONT.
+    /// the message and asks the work to stop; if work has begun, the program then has 15 seconds to close its files
+    /// and exit, before it is ended with status 3. A second signal ends it at once with the signal's number.
+    /// `on_report` is called for SIGCONT.
     ///
     /// Signals that the parent had ignored stay ignored.
     ///
@@ -54,7 +55,8 @@ impl Signals {
         let wanted = [SIGINT, SIGHUP, SIGTERM, SIGALRM, SIGXCPU, SIGXFSZ, SIGCONT];
         let mut stream = Stream::new(wanted.into_iter().filter(|s| ignored & (1 << (s - 1)) == 0))?;
         let ended = Arc::new(AtomicBool::new(false));
-        let done = Arc::clone(&ended);
+        let working = Arc::new(AtomicBool::new(false));
+        let (done, busy) = (Arc::clone(&ended), Arc::clone(&working));
         thread::Builder::new().name("signals".into()).spawn(move || {
             for signal in stream.forever() {
                 if signal == SIGCONT {
@@ -62,7 +64,7 @@ impl Signals {
                 } else {
                     on_end(Caught(signal));
                     let end = Instant::now() + PATIENCE;
-                    while Instant::now() < end && !done.load(Ordering::Acquire) {
+                    while busy.load(Ordering::Acquire) && Instant::now() < end && !done.load(Ordering::Acquire) {
                         if let Some(second) = stream.pending().find(|&s| s != SIGCONT) {
                             std::process::exit(second);
                         }
@@ -75,7 +77,12 @@ impl Signals {
                 }
             }
         })?;
-        Ok(Self { ended })
+        Ok(Self { ended, working })
+    }
+
+    /// Tells the watcher that there are files to close from now on.
+    pub fn begin_work(&self) {
+        self.working.store(true, Ordering::Release);
     }
 
     /// Tells the watcher that the program ends by itself now.

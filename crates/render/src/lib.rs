@@ -7,6 +7,7 @@ mod indirect;
 mod materials;
 mod options;
 mod patterns;
+pub mod picture;
 mod prepare;
 mod ray;
 mod renderer;

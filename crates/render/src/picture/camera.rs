@@ -105,6 +105,7 @@ impl Camera {
 fn between(a: &ViewRay, b: &ViewRay, at: f64) -> ViewRay {
     let mix = |a: DVec3, b: DVec3| a + (b - a) * at;
     let direction = mix(a.direction, b.direction).try_normalize().unwrap_or(a.direction);
-    let length = if a.length >= FAR || b.length >= FAR { a.length.min(b.length) } else { a.length + (b.length - a.length) * at };
+    let length =
+        if a.length >= FAR || b.length >= FAR { a.length.min(b.length) } else { a.length + (b.length - a.length) * at };
     ViewRay { origin: mix(a.origin, b.origin), direction, length }
 }

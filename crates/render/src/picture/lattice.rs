@@ -52,7 +52,9 @@ mod tests {
 
     #[test]
     fn spacings_are_those_of_rpict() {
-        for (spacing, across, down) in [(0, 1, 1), (1, 1, 1), (2, 3, 1), (4, 6, 3), (8, 11, 6), (16, 23, 11), (99, 23, 11)] {
+        for (spacing, across, down) in
+            [(0, 1, 1), (1, 1, 1), (2, 3, 1), (4, 6, 3), (8, 11, 6), (16, 23, 11), (99, 23, 11)]
+        {
             let lattice = Lattice::new(9, 9, spacing);
             assert_eq!((lattice.across, lattice.down), (across, down), "{spacing}");
         }

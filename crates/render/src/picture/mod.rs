@@ -11,4 +11,4 @@ mod tests;
 
 pub use camera::{Camera, Lens};
 pub use order::{Batches, hilbert_index};
-pub use sampler::{Band, Order, Pixel, PixelRequest, Sampler};
+pub use sampler::{Band, Order, Pixel, PixelRequest, Sampler, Trace};

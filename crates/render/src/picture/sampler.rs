@@ -12,6 +12,9 @@ use ambit_base::Rgb;
 /// so that results do not depend on threads.
 const SLAB_PIXELS: usize = 1 << 14;
 
+/// The fraction of the pixels off the lattice that is traced in pictures of moderate detail; it only matters to reports.
+const USUALLY_TRACED: f64 = 0.25;
+
 /// A pixel to be traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PixelRequest {
@@ -70,6 +73,9 @@ pub struct Sampler {
     pub order: Order,
 }
 
+/// Answers a batch of pixels, in order.
+pub type Trace<'a, E> = dyn FnMut(&[PixelRequest]) -> Result<Vec<Pixel>, E> + 'a;
+
 /// Finished rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
@@ -86,7 +92,7 @@ impl Sampler {
     /// Those of `trace` and `emit`.
     pub fn run<E>(
         &self,
-        trace: &mut dyn FnMut(&[PixelRequest]) -> Result<Vec<Pixel>, E>,
+        trace: &mut Trace<'_, E>,
         emit: &mut dyn FnMut(Band) -> Result<(), E>,
     ) -> Result<(), E> {
         if self.width == 0 || self.rows == 0 {
@@ -142,6 +148,17 @@ impl Sampler {
         }
     }
 
+    /// How many pixels are traced before the first rows come out, and which part of the work that is, roughly.
+    pub fn first_pass(&self) -> (usize, f64) {
+        if self.order == Order::TopDown || self.width == 0 {
+            return (0, 0.0);
+        }
+        let lattice = Lattice::new(self.width, self.rows, self.spacing);
+        let size: usize = (0..lattice.lines.len()).map(|n| lattice.columns(n).count()).sum();
+        let others = f64::from(self.width) * f64::from(self.rows) - size as f64;
+        (size, size as f64 / (size as f64 + USUALLY_TRACED * others))
+    }
+
     fn request(&self, (x, y): (u32, u32)) -> PixelRequest {
         PixelRequest { x, y, index: hilbert_index(x, y, self.width, self.height) }
     }
@@ -151,7 +168,7 @@ impl Sampler {
         &self,
         lattice: &Lattice,
         batches: &mut Batches,
-        trace: &mut dyn FnMut(&[PixelRequest]) -> Result<Vec<Pixel>, E>,
+        trace: &mut Trace<'_, E>,
     ) -> Result<Vec<Pixel>, E> {
         let lines: Vec<Vec<u32>> = (0..lattice.lines.len()).map(|n| lattice.columns(n).collect()).collect();
         let starts: Vec<usize> = lines
@@ -190,7 +207,7 @@ impl Sampler {
         slab: &mut Slab,
         missing: Vec<(u32, u32)>,
         batches: &mut Batches,
-        trace: &mut dyn FnMut(&[PixelRequest]) -> Result<Vec<Pixel>, E>,
+        trace: &mut Trace<'_, E>,
     ) -> Result<(), E> {
         let mut wanted: Vec<PixelRequest> = missing.into_iter().map(|p| self.request(p)).collect();
         wanted.sort_unstable_by_key(|r| r.index);

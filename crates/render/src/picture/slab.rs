@@ -153,9 +153,7 @@ impl<'a> Slab<'a> {
                 return 0;
             }
         }
-        count
-            + self.fill(at, step, half, (hint - 1) / 2)
-            + self.fill(middle, step, length - half, hint / 2)
+        count + self.fill(at, step, half, (hint - 1) / 2) + self.fill(middle, step, length - half, hint / 2)
     }
 
     /// The rows from the top down, without the bottom one unless it is the picture's last.

@@ -57,10 +57,8 @@ macro_rules! recorded {
 #[test]
 fn a_pattern_is_sampled_as_rpict_does() {
     let (width, height, all) = codes(recorded!("pattern-1-0.hdr"));
-    let truth = |x: u32, y: u32| Pixel {
-        colour: exact(all[((height - 1 - y) * width + x) as usize]),
-        distance: FAR as f32,
-    };
+    let truth =
+        |x: u32, y: u32| Pixel { colour: exact(all[((height - 1 - y) * width + x) as usize]), distance: FAR as f32 };
     for (spacing, threshold, bytes) in [
         (1, 0.0, &recorded!("pattern-1-0.hdr")[..]),
         (2, 0.05, recorded!("pattern-2-05.hdr")),

@@ -1,0 +1,146 @@
+//! Between the programs and the renderer: loading, the ambient file, and answers to batches of rays.
+
+use crate::session::{Session, Stop};
+use ambit_cli::{Class, Failure, Function, Rendering};
+use ambit_file::{Header, general};
+use ambit_render::{Answer, Definition, Environment, OctreeSource, Renderer, Request, load};
+use ambit_scene::{ErrorClass, ObjectId};
+use std::borrow::Cow;
+use std::path::Path;
+
+/// What answers rays: the renderer, or a stand-in for tests.
+pub(crate) trait Light {
+    /// Answers a batch, in order.
+    fn trace(&mut self, requests: &[Request]) -> Result<Vec<Answer>, Stop>;
+    /// The name of an object.
+    fn name(&self, id: ObjectId) -> Cow<'_, str>;
+}
+
+/// A scene that is lit.
+pub(crate) struct Scene<'a> {
+    session: &'a Session,
+    renderer: Renderer,
+    /// The octree's header.
+    pub(crate) header: Header,
+}
+
+impl<'a> Scene<'a> {
+    /// Loads the octree and prepares the calculation.
+    ///
+    /// `casting` says that rays are only cast, so that the ambient file stays closed.
+    pub(crate) fn open(
+        session: &'a Session,
+        source: OctreeSource,
+        name: &str,
+        rendering: &Rendering,
+        casting: bool,
+    ) -> Result<Self, Stop> {
+        let find = |name: &str| session.search.find_path(name);
+        let definitions: Vec<Definition> = rendering
+            .functions
+            .iter()
+            .map(|f| match f {
+                Function::File(name) => Definition::File(name.clone()),
+                Function::Expression(text) => Definition::Text(text.clone()),
+            })
+            .collect();
+        let environment = Environment { find: &find, notify: &session.messages, definitions: &definitions };
+        let loaded = load(source, &environment).map_err(failed)?;
+        let header = loaded.header().clone();
+        let mut renderer = Renderer::new(loaded, rendering.options.clone(), &environment).map_err(failed)?;
+        if let Some(file) = rendering.ambient_file.as_ref().filter(|_| !casting) {
+            if rendering.options.ambient.accuracy <= 0.0 {
+                let text = format!("zero ambient accuracy so \"{file}\" not opened");
+                ambit_base::Notify::warn(&session.messages, &text);
+            } else {
+                renderer.share(Path::new(file), &ambient_header(rendering, name), &session.messages).map_err(failed)?;
+            }
+        }
+        session.begin_work();
+        Ok(Self { session, renderer, header })
+    }
+
+    /// Closes the ambient file; call it whatever happened.
+    pub(crate) fn close(mut self) -> Result<(), Stop> {
+        self.renderer.finish(&self.session.messages).map_err(failed)
+    }
+}
+
+impl Light for Scene<'_> {
+    fn trace(&mut self, requests: &[Request]) -> Result<Vec<Answer>, Stop> {
+        self.session.check()?;
+        let answers = self.renderer.trace(requests, &self.session.messages).map_err(failed)?;
+        self.session.meter.set_rays(self.renderer.rays());
+        Ok(answers)
+    }
+
+    fn name(&self, id: ObjectId) -> Cow<'_, str> {
+        self.renderer.name(id)
+    }
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "it is what map_err hands over")]
+fn failed(error: ambit_render::Error) -> Stop {
+    let class = match error.class() {
+        ErrorClass::User => Class::User,
+        ErrorClass::System => Class::System,
+        ErrorClass::Internal => Class::Internal,
+    };
+    let place = error.location();
+    // The text is Radiance's; the place comes after it, as scripts look at the beginning.
+    let text = if place.line > 0 { format!("{error} ({place})") } else { error.to_string() };
+    Stop::Failure(Failure { class, text })
+}
+
+/// The header lines of a new ambient file: the options that its values depend on, in Radiance's order.
+fn ambient_header(rendering: &Rendering, octree: &str) -> Vec<String> {
+    let o = &rendering.options;
+    let g = |x: f64| general(x, 6);
+    let f = |x: f32| general(f64::from(x), 6);
+    let (a, d, s) = (&o.ambient, &o.direct, &o.specular);
+    let flag = |name: &str, on: bool, usual: bool| {
+        if on == usual { String::new() } else { format!(" -{name}{}", if on { '+' } else { '-' }) }
+    };
+    let medium = o.medium;
+    let mist = if medium.extinction.max_element() > 0.0 {
+        let (e, m) = (medium.extinction, medium.albedo);
+        format!(
+            " -me {} {} {} -ma {} {} {} -mg {} -ms {}",
+            f(e.x),
+            f(e.y),
+            f(e.z),
+            f(m.x),
+            f(m.y),
+            f(m.z),
+            g(medium.eccentricity),
+            g(medium.sampling)
+        )
+    } else {
+        String::new()
+    };
+    let line = format!(
+        "rpict -av {} {} {} -aw {} -ab {} -aa {} -ad {} -as {} -ar {}{mist}{}{} -dr {} -ds {} -dt {} -dc {} -ss {} -st {} \
+         -lr {} -lw {} -cw 380 780 -cs 3 {octree}",
+        f(a.value.x),
+        f(a.value.y),
+        f(a.value.z),
+        a.weight,
+        a.bounces,
+        g(a.accuracy),
+        a.divisions,
+        a.super_samples,
+        a.resolution,
+        flag("bv", o.back_visible, true),
+        flag("dv", d.visible, true),
+        d.relays,
+        g(d.sampling),
+        g(d.threshold),
+        g(d.certainty),
+        g(s.sampling),
+        g(s.threshold),
+        o.limits.reflections,
+        g(o.limits.weight)
+    );
+    let [date, gmt] = Session::time_lines();
+    vec![line, format!("SOFTWARE= {}", ambit_cli::VERSION), date, gmt]
+}

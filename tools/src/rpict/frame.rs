@@ -1,0 +1,198 @@
+//! One picture: its view and size, what is recovered, and the rest that is computed.
+
+use super::header::resolution_line;
+use super::output::PictureOutput;
+use super::recover::{self, Recovered};
+use super::watch::Watch;
+use crate::colour::Conversion;
+use crate::light::{Light, Scene};
+use crate::session::{Session, Stop};
+use ambit_base::{Notify, Rgb};
+use ambit_cli::{Failure, PictureOptions};
+use ambit_file::{PixelSpace, Projection, View, fit_resolution};
+use ambit_render::Request;
+use ambit_render::picture::{Band, Camera, Lens, Order, Pixel, PixelRequest, Sampler};
+
+/// What is common to all pictures of a run.
+pub(crate) struct Picture<'a> {
+    pub(crate) session: &'a Session,
+    pub(crate) options: &'a PictureOptions,
+    pub(crate) conversion: Conversion,
+    pub(crate) space: PixelSpace,
+}
+
+/// One picture.
+pub(crate) struct Frame {
+    /// Its number in a sequence.
+    pub(crate) number: Option<i32>,
+    /// Its view.
+    pub(crate) view: Projection,
+    /// The view before, if motion blurs.
+    pub(crate) previous: Option<Projection>,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) pixel_aspect: f64,
+    /// Output file; none for standard output.
+    pub(crate) output: Option<String>,
+    /// File of distances.
+    pub(crate) distances: Option<String>,
+    /// What is there already.
+    pub(crate) recovered: Option<Recovered>,
+    /// False if other pictures come before it on the same stream.
+    pub(crate) first: bool,
+}
+
+/// A view that has passed its checks.
+pub(crate) fn set_up(view: &View) -> Result<Projection, Failure> {
+    view.set_up().map_err(|e| Failure::user(e.to_string()))
+}
+
+impl Frame {
+    /// A frame of this view, to standard output.
+    pub(crate) fn new(view: Projection, options: &PictureOptions) -> Self {
+        let size = |v: i32| v.clamp(0, u16::MAX.into()) as u32;
+        let fit = fit_resolution(view.aspect(), options.pixel_aspect, size(options.width), size(options.height));
+        Self {
+            number: None,
+            view,
+            previous: None,
+            width: fit.width,
+            height: fit.height,
+            pixel_aspect: fit.pixel_aspect,
+            output: None,
+            distances: None,
+            recovered: None,
+            first: true,
+        }
+    }
+
+    /// The only frame of a run, perhaps with what an interrupted one has left.
+    pub(crate) fn single(picture: &Picture<'_>) -> Result<Self, Stop> {
+        let options = picture.options;
+        let mut recovered = None;
+        if let Some(file) = &options.recover
+            && let Some(path) = recover::set_aside(picture.session, file, options.output.as_deref())?
+        {
+            recovered = recover::read(picture.session, path, picture.space);
+        }
+        let view = recovered.as_ref().map_or(&options.view, |r| &r.view);
+        let mut frame = Self::new(set_up(view)?, options);
+        frame.output.clone_from(&options.output);
+        frame.distances.clone_from(&options.distances);
+        frame.take_over(recovered);
+        Ok(frame)
+    }
+
+    /// Takes over size and lines of an interrupted picture.
+    pub(crate) fn take_over(&mut self, recovered: Option<Recovered>) {
+        if let Some(r) = &recovered {
+            (self.width, self.height) = r.size;
+            self.pixel_aspect = r.pixel_aspect;
+        }
+        self.recovered = recovered;
+    }
+}
+
+impl Picture<'_> {
+    /// Makes a picture.
+    pub(crate) fn make(&self, frame: &Frame, scene: &mut Scene<'_>) -> Result<(), Stop> {
+        let options = self.options;
+        let (width, height) = (frame.width, frame.height);
+        let done = frame.recovered.as_ref().map_or(0, |r| r.lines.len() as u32);
+        let mut output = PictureOutput::open(frame.output.as_deref(), frame.distances.as_deref(), done, width)?;
+        let mut head = Vec::new();
+        // Writing to memory does not fail.
+        let _ = self.header(frame, &scene.header, frame.first).write(&mut head);
+        head.extend_from_slice(resolution_line(width, height).as_bytes());
+        output.head(&head)?;
+        if let Some(r) = &frame.recovered {
+            output.codes(&r.lines)?;
+            std::fs::remove_file(&r.file)
+                .map_err(|e| Failure::system(format!("cannot remove \"{}\"", r.file.display()), &e))?;
+        }
+        if width == 0 || height == 0 {
+            self.session.messages.warn("empty output picture");
+            return Ok(());
+        }
+        if let Some(number) = frame.number.filter(|_| options.report > 0) {
+            use std::io::Write;
+            let _ = writeln!(std::io::stderr(), "FRAME {number}: {}", frame.view.view);
+        }
+        let lines = |left: u32| 100.0 * f64::from(height - left) / f64::from(height);
+        let mut watch = Watch::start(self.session, options.report, lines(height - done));
+        self.compute(frame, height - done, scene, &mut output, &mut watch)?;
+        watch.finish();
+        Ok(())
+    }
+
+    /// Computes the lowest `rows` rows.
+    fn compute(
+        &self,
+        frame: &Frame,
+        rows: u32,
+        scene: &mut Scene<'_>,
+        output: &mut PictureOutput,
+        watch: &mut Watch<'_>,
+    ) -> Result<(), Stop> {
+        let options = self.options;
+        let ambient = &options.rendering.options.ambient;
+        let cached = ambient.bounces > 0 && ambient.accuracy > 0.0;
+        let sampler = Sampler {
+            width: frame.width,
+            rows,
+            height: frame.height,
+            spacing: options.spacing as u32,
+            threshold: options.threshold,
+            distances: frame.distances.is_some(),
+            order: if cached { Order::CoarseToFine } else { Order::TopDown },
+        };
+        let camera = Camera {
+            projection: frame.view,
+            previous: frame.previous,
+            width: frame.width,
+            height: frame.height,
+            lens: Lens { jitter: options.jitter, aperture: options.aperture, motion: options.motion },
+            seed: options.rendering.options.seed,
+        };
+        let (first, share) = sampler.first_pass();
+        let start = 100.0 * (1.0 - f64::from(rows) / f64::from(frame.height));
+        let part = |fraction: f64| start + (100.0 - start) * fraction;
+        let watch = std::cell::RefCell::new(watch);
+        let mut traced = 0;
+        sampler.run(
+            &mut |pixels| {
+                let answers = self.trace(&camera, pixels, scene)?;
+                traced += pixels.len();
+                if traced <= first {
+                    watch.borrow_mut().step(part(share * traced as f64 / first as f64));
+                }
+                Ok(answers)
+            },
+            &mut |band: Band| {
+                let left = f64::from(band.top + 1) - band.rows.len() as f64;
+                let (colours, lengths): (Vec<Vec<Rgb>>, Vec<Vec<f32>>) =
+                    band.rows.iter().map(|row| row.iter().map(|p| (p.colour, p.distance)).unzip()).unzip();
+                output.pixels(colours.iter().map(Vec::as_slice).zip(lengths.iter().map(Vec::as_slice)))?;
+                if left > 0.0 {
+                    watch.borrow_mut().step(part(share + (1.0 - share) * (1.0 - left / f64::from(rows))));
+                }
+                Ok(())
+            },
+        )
+    }
+
+    /// Traces pixels; those outside the view are black and have no distance.
+    fn trace(&self, camera: &Camera, pixels: &[PixelRequest], light: &mut dyn Light) -> Result<Vec<Pixel>, Stop> {
+        let rays: Vec<Option<Request>> = pixels.iter().map(|&p| camera.ray(p)).collect();
+        let requests: Vec<Request> = rays.iter().flatten().copied().collect();
+        let mut answers = light.trace(&requests)?.into_iter();
+        let pixel = |ray: &Option<Request>| {
+            let answer = ray.as_ref().and_then(|_| answers.next());
+            answer.map_or_else(Pixel::default, |a| Pixel {
+                colour: self.conversion.apply(a.value),
+                distance: a.length as f32,
+            })
+        };
+        Ok(rays.iter().map(pixel).collect())
+    }
+}

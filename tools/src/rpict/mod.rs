@@ -1,0 +1,96 @@
+//! rpict: views to pictures.
+
+mod frame;
+mod header;
+mod output;
+mod recover;
+mod sequence;
+mod watch;
+
+use crate::colour::Conversion;
+use crate::light::Scene;
+use crate::session::{Session, Stop, Tool, split};
+use ambit_base::Notify;
+use ambit_cli::{About, COMMON_FEATURES, Failure, Features, Output, PICTURE_FEATURES, PictureOptions, picture_table};
+use ambit_file::PixelSpace;
+use ambit_render::OctreeSource;
+use frame::{Frame, Picture};
+use std::ffi::OsString;
+use std::io::{Read, stdin};
+use std::process::ExitCode;
+
+const ABOUT: About = About {
+    name: "rpict",
+    summary: "Renders a view of a scene to a Radiance picture on standard output.",
+    synopsis: "[options] [$NAME] [@FILE] [OCTREE] > PICTURE",
+    notes: "Without OCTREE, the octree is read from standard input. OCTREE may be a '!command'.",
+};
+
+/// Greatest sample spacing.
+const GREATEST_SPACING: i32 = 16;
+
+/// Runs the program.
+pub fn main(arguments: impl Iterator<Item = OsString>) -> ExitCode {
+    let (program, words) = split(arguments);
+    let mut session = Session::new(program, true);
+    let result = run(&mut session, words);
+    let failed = result.is_err();
+    let status = session.end(result);
+    if failed {
+        session.meter.report();
+    }
+    status
+}
+
+fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
+    let tool = Tool { about: ABOUT, features: Features(&[COMMON_FEATURES, PICTURE_FEATURES]), table: picture_table() };
+    let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let mut options = PictureOptions::new(processors);
+    if !session.read(words, &tool, &mut options)? {
+        return Ok(());
+    }
+    options.rendering.check()?;
+    if options.spacing > GREATEST_SPACING {
+        let text = format!("pixel sampling reduced from {} to {GREATEST_SPACING}", options.spacing);
+        session.messages.warn(&text);
+    }
+    options.spacing = options.spacing.clamp(1, GREATEST_SPACING);
+    if options.sequence > 0 {
+        if session.octree.is_none() {
+            return Err(Failure::user("missing octree argument").into());
+        }
+        sequence::check(&options)?;
+    } else if options.recover.is_none() {
+        // A recovered picture brings its own view.
+        options.view.set_up().map_err(|e| Failure::user(e.to_string()))?;
+    }
+    session.prepare(&options.common)?;
+    let (source, name) = source(session)?;
+    let mut scene = Scene::open(session, source, &name, &options.rendering, false)?;
+    let result = render(session, &options, &mut scene);
+    // The ambient file is closed whatever happened; the first error counts.
+    result.and(scene.close())
+}
+
+fn source(session: &Session) -> Result<(OctreeSource, String), Stop> {
+    let Some(name) = session.octree.clone() else {
+        let mut bytes = Vec::new();
+        let name = "standard input".to_owned();
+        stdin().lock().read_to_end(&mut bytes).map_err(|e| Failure::system("cannot read standard input", &e))?;
+        return Ok((OctreeSource::Bytes { name: name.clone(), bytes }, name));
+    };
+    Ok(match name.strip_prefix('!') {
+        Some(command) => (OctreeSource::Command(command.to_owned()), name.clone()),
+        None => (OctreeSource::File(name.clone()), name),
+    })
+}
+
+fn render(session: &Session, options: &PictureOptions, scene: &mut Scene<'_>) -> Result<(), Stop> {
+    let space = if options.common.output == Output::Xyz { PixelSpace::Xyz } else { PixelSpace::Rgb };
+    let picture = Picture { session, options, conversion: Conversion::new(options.common.output, true), space };
+    if options.sequence > 0 {
+        return sequence::run(&picture, scene, stdin().lock());
+    }
+    let frame = Frame::single(&picture)?;
+    picture.make(&frame, scene)
+}

@@ -1,0 +1,72 @@
+//! Where pictures and distances go.
+
+use crate::session::Stop;
+use ambit_base::Rgb;
+use ambit_cli::Failure;
+use ambit_file::{encode_pixel, encode_scanline};
+use std::fs::{File, OpenOptions};
+use std::io::{self, Seek, SeekFrom, Write};
+
+/// An open picture, and its file of distances.
+pub(crate) struct PictureOutput {
+    picture: Box<dyn Write>,
+    distances: Option<File>,
+}
+
+/// The longest scanline that is run-length encoded is part of the encoding; longer and shorter ones are written flat by
+/// [`encode_scanline`] itself.
+impl PictureOutput {
+    /// Opens the outputs. A picture's file must be new; a file of distances is written over, from row `done` on.
+    pub(crate) fn open(picture: Option<&str>, distances: Option<&str>, done: u32, width: u32) -> Result<Self, Failure> {
+        let stream: Box<dyn Write> = match picture {
+            None => Box::new(io::stdout()),
+            Some(name) => {
+                let file = OpenOptions::new().write(true).create_new(true).open(name);
+                Box::new(file.map_err(|e| Failure::system(format!("cannot open output file \"{name}\""), &e))?)
+            }
+        };
+        let distances = match distances {
+            None => None,
+            Some(name) => {
+                let failed = |e: io::Error| Failure::system(format!("cannot open z-file \"{name}\""), &e);
+                // An old, longer file keeps its tail, as Radiance's does.
+                let mut file =
+                    OpenOptions::new().write(true).create(true).truncate(false).open(name).map_err(failed)?;
+                let offset = u64::from(done) * u64::from(width) * size_of::<f32>() as u64;
+                file.seek(SeekFrom::Start(offset)).map_err(failed)?;
+                Some(file)
+            }
+        };
+        Ok(Self { picture: stream, distances })
+    }
+
+    /// Writes the header and what follows it.
+    pub(crate) fn head(&mut self, bytes: &[u8]) -> Result<(), Stop> {
+        let written = self.picture.write_all(bytes).and_then(|()| self.picture.flush());
+        written.map_err(|e| Stop::writing("error writing picture header", &e))
+    }
+
+    /// Writes scanlines of codes, from the top down.
+    pub(crate) fn codes(&mut self, lines: &[Vec<[u8; 4]>]) -> Result<(), Stop> {
+        let mut bytes = Vec::new();
+        for line in lines {
+            encode_scanline(line, &mut bytes);
+        }
+        let written = self.picture.write_all(&bytes).and_then(|()| self.picture.flush());
+        written.map_err(|e| Stop::writing("write error in render", &e))
+    }
+
+    /// Writes scanlines of pixels and their distances.
+    pub(crate) fn pixels<'a>(&mut self, lines: impl Iterator<Item = (&'a [Rgb], &'a [f32])>) -> Result<(), Stop> {
+        let (mut codes, mut distances) = (Vec::new(), Vec::new());
+        for (colours, lengths) in lines {
+            codes.push(colours.iter().map(|&c| encode_pixel(c)).collect());
+            distances.extend(lengths.iter().flat_map(|z| z.to_ne_bytes()));
+        }
+        self.codes(&codes)?;
+        if let Some(file) = &mut self.distances {
+            file.write_all(&distances).map_err(|e| Stop::writing("write error in render", &e))?;
+        }
+        Ok(())
+    }
+}

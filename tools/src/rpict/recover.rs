@@ -1,0 +1,87 @@
+//! Going on with a picture that was interrupted (`-r`, `-ro`).
+
+use crate::session::{Session, Stop};
+use ambit_base::Notify;
+use ambit_cli::Failure;
+use ambit_file::{PictureReader, PixelSpace, View};
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// What an interrupted picture still has.
+pub(crate) struct Recovered {
+    /// The file, to be removed when its lines have been copied.
+    pub(crate) file: PathBuf,
+    /// Its view.
+    pub(crate) view: View,
+    /// Width and height.
+    pub(crate) size: (u32, u32),
+    /// Height over width of its pixels.
+    pub(crate) pixel_aspect: f64,
+    /// Scanlines that are whole, from the top.
+    pub(crate) lines: Vec<Vec<[u8; 4]>>,
+}
+
+/// Moves the file out of the way if the new picture will have its name. Returns its name from now on, `None` if there
+/// is no such file.
+pub(crate) fn set_aside(session: &Session, file: &str, output: Option<&str>) -> Result<Option<PathBuf>, Stop> {
+    let path = Path::new(file);
+    if output != Some(file) {
+        return Ok(Some(path.to_path_buf()));
+    }
+    if !path.exists() {
+        session.messages.warn(&format!("new output file \"{file}\""));
+        return Ok(None);
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let spare = spare_name(folder, std::process::id());
+    fs::rename(path, &spare).map_err(|e| Failure::system(format!("cannot rename \"{file}\""), &e))?;
+    Ok(Some(spare))
+}
+
+/// A name `rfXXXXXX` that is free in a folder.
+fn spare_name(folder: &Path, seed: u32) -> PathBuf {
+    const LETTERS: &[u8; 36] = b"abcdefghijklmnopqrstuvwxyz0123456789";
+    let mut number = u64::from(seed);
+    loop {
+        let mut digits = ambit_base::mix(number, 0x7266);
+        let mut name = String::from("rf");
+        for _ in 0..6 {
+            name.push(char::from(LETTERS[(digits % 36) as usize]));
+            digits /= 36;
+        }
+        let path = folder.join(name);
+        if !path.exists() {
+            return path;
+        }
+        number += 1;
+    }
+}
+
+/// Reads what is there, with Radiance's warnings if nothing is.
+pub(crate) fn read(session: &Session, file: PathBuf, space: PixelSpace) -> Option<Recovered> {
+    let name = file.display().to_string();
+    let warn = |text: String| session.messages.warn(&text);
+    let Ok(open) = File::open(&file) else {
+        warn(format!("cannot recover view parameters from \"{name}\""));
+        warn(format!("cannot open recover file \"{name}\""));
+        return None;
+    };
+    let mut view = View::default();
+    let reader = PictureReader::new(BufReader::new(open), &name)
+        .ok()
+        .filter(|reader| reader.space == space && view.apply_header(&reader.header, &session.program) > 0);
+    let Some(mut reader) = reader else {
+        warn(format!("cannot recover view parameters from \"{name}\""));
+        warn(format!("bad recover file \"{name}\" - not removed"));
+        return None;
+    };
+    let size = (reader.resolution.width, reader.resolution.height);
+    let pixel_aspect = reader.header.pixel_aspect();
+    let mut lines = Vec::new();
+    // A line that was cut off is no line.
+    while let Ok(Some(line)) = reader.next_codes() {
+        lines.push(line.to_vec());
+    }
+    Some(Recovered { file, view, size, pixel_aspect, lines })
+}

@@ -1,0 +1,135 @@
+//! Rays from standard input: six numbers each, as text or as native reals.
+
+use ambit_base::DVec3;
+use ambit_cli::InputFormat;
+use ambit_file::real;
+use std::io::{self, BufRead};
+
+/// Longest word of text input; what follows counts as a word of its own.
+const LONGEST_WORD: usize = 31;
+
+/// Reads rays.
+pub(crate) struct RayReader<R> {
+    input: R,
+    format: InputFormat,
+}
+
+impl<R: BufRead> RayReader<R> {
+    /// Rays of a format from a stream.
+    pub(crate) fn new(input: R, format: InputFormat) -> Self {
+        Self { input, format }
+    }
+
+    /// Origin and direction of the next ray. `None` at the end of the input, or where it stops to be numbers; an
+    /// incomplete last ray is dropped.
+    pub(crate) fn next(&mut self) -> Option<(DVec3, DVec3)> {
+        let mut v = [0.0; 6];
+        for x in &mut v {
+            *x = match self.format {
+                InputFormat::Ascii => real(&self.word()?)?,
+                InputFormat::Float => {
+                    let mut bytes = [0; 4];
+                    self.input.read_exact(&mut bytes).ok()?;
+                    f64::from(f32::from_ne_bytes(bytes))
+                }
+                InputFormat::Double => {
+                    let mut bytes = [0; 8];
+                    self.input.read_exact(&mut bytes).ok()?;
+                    f64::from_ne_bytes(bytes)
+                }
+            };
+        }
+        let [ox, oy, oz, dx, dy, dz] = v;
+        Some((DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz)))
+    }
+
+    /// The next word: up to white space, or what stands between quotes.
+    fn word(&mut self) -> Option<String> {
+        let mut first = self.byte().ok()??;
+        while is_space(first) {
+            first = self.byte().ok()??;
+        }
+        let quote = matches!(first, b'"' | b'\'').then_some(first);
+        let mut word = String::new();
+        if quote.is_none() {
+            word.push(char::from(first));
+        }
+        while word.len() < LONGEST_WORD {
+            let Some(next) = self.peek().ok()? else { break };
+            if quote.is_none() && is_space(next) {
+                break;
+            }
+            self.input.consume(1);
+            if Some(next) == quote {
+                break;
+            }
+            word.push(char::from(next));
+        }
+        Some(word)
+    }
+
+    fn byte(&mut self) -> io::Result<Option<u8>> {
+        let byte = self.peek()?;
+        if byte.is_some() {
+            self.input.consume(1);
+        }
+        Ok(byte)
+    }
+
+    fn peek(&mut self) -> io::Result<Option<u8>> {
+        loop {
+            match self.input.fill_buf() {
+                Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
+                other => return other.map(|buffer| buffer.first().copied()),
+            }
+        }
+    }
+}
+
+fn is_space(byte: u8) -> bool {
+    byte.is_ascii_whitespace() || byte == 0x0b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rays(text: &str) -> Vec<[f64; 6]> {
+        let mut reader = RayReader::new(text.as_bytes(), InputFormat::Ascii);
+        std::iter::from_fn(|| reader.next()).map(|(o, d)| [o.x, o.y, o.z, d.x, d.y, d.z]).collect()
+    }
+
+    #[test]
+    fn any_layout_of_words_will_do() {
+        assert_eq!(
+            rays("1 2\t3\r\n4 5 \"6\" 7 8 9 1e1 +11 .5\n7 7"),
+            [[1., 2., 3., 4., 5., 6.], [7., 8., 9., 10., 11., 0.5]]
+        );
+        assert_eq!(rays(""), [[0.0; 6]; 0]);
+    }
+
+    #[test]
+    fn the_first_bad_word_is_the_end() {
+        for bad in ["nan", "inf", "0x2", "foo", "#", "1,", "1d0"] {
+            assert_eq!(rays(&format!("1 2 3 4 5 6 7 8 9 {bad} 1 1 1 2 3 4 5 6")).len(), 1, "{bad}");
+        }
+    }
+
+    #[test]
+    fn long_words_are_split() {
+        let long = format!("0.5{}25 3 4 5 6", "0".repeat(28));
+        // 31 characters, then two more.
+        assert_eq!(rays(&long), [[0.5, 25.0, 3.0, 4.0, 5.0, 6.0]]);
+    }
+
+    #[test]
+    fn binary_rays_are_native() {
+        let bytes: Vec<u8> = (0..13).flat_map(|i| (i as f32).to_ne_bytes()).collect();
+        let mut reader = RayReader::new(&bytes[..], InputFormat::Float);
+        assert_eq!(reader.next(), Some((DVec3::new(0., 1., 2.), DVec3::new(3., 4., 5.))));
+        assert!(reader.next().is_some());
+        assert_eq!(reader.next(), None);
+        let bytes: Vec<u8> = (0..6).flat_map(|i| f64::from(i).to_ne_bytes()).collect();
+        assert!(RayReader::new(&bytes[..], InputFormat::Double).next().is_some());
+    }
+}

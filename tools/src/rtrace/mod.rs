@@ -1,0 +1,120 @@
+//! rtrace: rays in, records out.
+
+mod header;
+mod input;
+mod record;
+mod stream;
+
+use crate::colour::Conversion;
+use crate::light::Scene;
+use crate::session::{Session, Stop, Tool, split};
+use ambit_base::Notify;
+use ambit_cli::{
+    About, COMMON_FEATURES, Failure, Features, Field, OutputFormat, OutputSpec, RAY_FEATURES, RayOptions, ray_table,
+};
+use ambit_render::OctreeSource;
+use input::RayReader;
+use record::RecordWriter;
+use std::ffi::OsString;
+use std::io::{BufReader, Write, stdin, stdout};
+use std::process::ExitCode;
+
+const ABOUT: About = About {
+    name: "rtrace",
+    summary: "Traces rays from standard input in a scene and prints what they see.",
+    synopsis: "[options] [$NAME] [@FILE] OCTREE < RAYS > RECORDS",
+    notes: "A ray is an origin and a direction, six numbers. A direction of zero flushes the output. OCTREE may be a \
+            '!command'.",
+};
+
+/// Runs the program.
+pub fn main(arguments: impl Iterator<Item = OsString>) -> ExitCode {
+    let (program, words) = split(arguments);
+    let mut session = Session::new(program, false);
+    let result = run(&mut session, words);
+    session.end(result)
+}
+
+fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
+    let tool = Tool { about: ABOUT, features: Features(&[COMMON_FEATURES, RAY_FEATURES]), table: ray_table() };
+    let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let mut options = RayOptions::new(processors);
+    if !session.read(words, &tool, &mut options)? {
+        return Ok(());
+    }
+    options.rendering.check()?;
+    let Some(octree) = session.octree.clone() else {
+        return Err(Failure::user("missing octree argument").into());
+    };
+    let job = Job::new(&options, session)?;
+    session.prepare(&options.common)?;
+    let source = match octree.strip_prefix('!') {
+        Some(command) => OctreeSource::Command(command.to_owned()),
+        None => OctreeSource::File(octree.clone()),
+    };
+    let mut scene = Scene::open(session, source, &octree, &options.rendering, !job.spec.shades())?;
+    let result = job.run(session, &options, &mut scene);
+    // The ambient file is closed whatever happened; the first error counts.
+    result.and(scene.close())
+}
+
+/// What a run has to do, complete and checked.
+pub(crate) struct Job {
+    spec: OutputSpec,
+    conversion: Conversion,
+}
+
+impl Job {
+    fn new(options: &RayOptions, session: &Session) -> Result<Self, Stop> {
+        let spec = OutputSpec::parse(&options.fields)?;
+        let conversion = Conversion::new(options.common.output, false);
+        if options.format == OutputFormat::Colour {
+            if !matches!(spec.fields[..], [Field::Value | Field::Mirrored | Field::Unmirrored]) {
+                return Err(Failure::user("color format only with -ov, -or, -ox").into());
+            }
+            if conversion.channels() != 3 {
+                return Err(Failure::user("color format incompatible with -pY, -pS, -pM").into());
+            }
+        }
+        let irradiance = options.immediate || options.rendering.options.irradiance;
+        if irradiance && !spec.shades() {
+            return Err(Failure::user("-I+ and -i+ options require some value output").into());
+        }
+        let ambient = &options.rendering.options.ambient;
+        for (field, letter) in [(Field::Contribution, 'V'), (Field::Coefficient, 'W')] {
+            if spec.has(&[field]) && ambient.bounces > 0 && (ambient.accuracy > 0.0 || ambient.super_samples > 0) {
+                session.messages.warn(&format!("-ot{letter} accuracy depends on -aa 0 -as 0"));
+            }
+        }
+        if spec.has(&[Field::Contribution, Field::Coefficient]) {
+            session.messages.warn("-oVW options require trace mode");
+        }
+        let parts = [Field::Mirrored, Field::MirroredLength, Field::Unmirrored, Field::UnmirroredLength];
+        if irradiance && spec.has(&parts) {
+            session.messages.warn("-orRxX options incompatible with -I+ and -i+");
+        }
+        Ok(Self { spec, conversion })
+    }
+
+    fn run(&self, session: &Session, options: &RayOptions, scene: &mut Scene<'_>) -> Result<(), Stop> {
+        let mut out = stdout().lock();
+        let picture = (options.width > 0 && options.height > 0).then_some((options.width, options.height));
+        let mut head = Vec::new();
+        if options.header {
+            header::write(&mut head, session, options, &scene.header, &self.spec, self.conversion.channels())?;
+        }
+        if let Some((width, height)) = picture {
+            let resolution = ambit_file::Resolution::new(width as u32, height as u32);
+            head.extend_from_slice(format!("{resolution}\n").as_bytes());
+        }
+        let written = out.write_all(&head).and_then(|()| if options.width > 0 { out.flush() } else { Ok(()) });
+        written.map_err(|e| Stop::writing("write error", &e))?;
+        let records = RecordWriter::new(&self.spec, self.conversion, options.format);
+        let reader = RayReader::new(BufReader::with_capacity(1 << 16, stdin().lock()), options.input);
+        let complete = stream::Stream::new(options, &self.spec).run(reader, &records, scene, &mut out)?;
+        if !complete {
+            session.messages.warn("unexpected EOF on input");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,221 @@
+//! The stream of rays: batches, flushing, and the number of records.
+//!
+//! Batches grow from one ray to 4096 and end where output must be flushed; where they end depends on the options and on
+//! the rays, never on how a pipe delivers them.
+
+use super::input::RayReader;
+use super::record::RecordWriter;
+use crate::light::Light;
+use crate::session::Stop;
+use ambit_base::{DVec3, FAR};
+use ambit_cli::{OutputSpec, RayOptions};
+use ambit_render::picture::Batches;
+use ambit_render::{Aim, Request};
+use std::io::{BufRead, Write};
+
+/// Bytes that are collected before they are written, unless they must be flushed.
+const BUFFER: usize = 1 << 16;
+
+/// How a stream is cut.
+pub(crate) struct Stream {
+    aim: Aim,
+    limited: bool,
+    /// Flush after so many rays; 0 for never.
+    interval: u64,
+    /// Stop after so many records; 0 for never.
+    most: u64,
+}
+
+impl Stream {
+    /// The stream that the options ask for.
+    pub(crate) fn new(options: &RayOptions, spec: &OutputSpec) -> Self {
+        let aim = match (options.immediate, spec.shades()) {
+            (true, _) => Aim::Irradiance,
+            (false, true) => Aim::Radiance,
+            (false, false) => Aim::Geometry,
+        };
+        let (x, y) = (options.width.max(0) as u64, options.height.max(0) as u64);
+        // In a picture only a width of one flushes.
+        let interval = if y > 0 && x > 1 { 0 } else { x };
+        let most = if y > 0 { x.max(1) * y } else { 0 };
+        Self { aim, limited: options.limited, interval, most }
+    }
+
+    /// Answers rays until they end. Returns false if more were promised (`-y`).
+    pub(crate) fn run<R: BufRead>(
+        &self,
+        mut rays: RayReader<R>,
+        records: &RecordWriter<'_>,
+        light: &mut dyn Light,
+        out: &mut dyn Write,
+    ) -> Result<bool, Stop> {
+        let mut batches = Batches::default();
+        let mut bytes = Vec::new();
+        let mut requests: Vec<Request> = Vec::new();
+        let mut before = (DVec3::ZERO, DVec3::ZERO);
+        // Records made in all, and rays since the last flush.
+        let (mut made, mut unflushed) = (0u64, 0u64);
+        let mut index = 0u32;
+        loop {
+            let mut room = u64::MAX;
+            if self.interval > 0 {
+                room = self.interval - unflushed;
+            }
+            if self.most > 0 {
+                room = room.min(self.most - made);
+            }
+            let size = batches.next(usize::try_from(room).unwrap_or(usize::MAX));
+            let mut end = false;
+            let mut zero = false;
+            while requests.len() < size {
+                let Some((origin, direction)) = rays.next() else {
+                    end = true;
+                    break;
+                };
+                let length = direction.length();
+                if length == 0.0 {
+                    zero = true;
+                    break;
+                }
+                let limit = if self.limited { length } else { FAR };
+                requests.push(Request { origin, direction, limit, index, aim: self.aim });
+                index = index.wrapping_add(1);
+            }
+            for answer in light.trace(&requests)? {
+                records.write(&mut bytes, &answer, light);
+                before = (answer.origin, answer.direction);
+            }
+            made += requests.len() as u64;
+            unflushed += requests.len() as u64;
+            requests.clear();
+            let mut flush = self.interval > 0 && unflushed >= self.interval;
+            if zero {
+                records.write_bogus(&mut bytes, before, light);
+                made += 1;
+                // With nothing pending it waits for the next flush.
+                flush |= unflushed > 0;
+            }
+            let full = self.most > 0 && made >= self.most;
+            if flush || end || full || bytes.len() >= BUFFER {
+                out.write_all(&bytes).map_err(|e| Stop::writing("write error", &e))?;
+                bytes.clear();
+            }
+            if flush || end || full {
+                out.flush().map_err(|e| Stop::writing("write error", &e))?;
+                unflushed = 0;
+            }
+            if end || full {
+                return Ok(full || self.most == 0);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::colour::Conversion;
+    use ambit_base::Rgb;
+    use ambit_cli::{InputFormat, Output, OutputFormat};
+    use ambit_render::Answer;
+    use ambit_scene::ObjectId;
+    use std::borrow::Cow;
+    use std::cell::RefCell;
+    use std::rc::Rc;
+
+    /// A light whose radiance is the ray's first coordinate; it notes the sizes of batches.
+    struct Plain(Rc<RefCell<Vec<String>>>);
+
+    impl Light for Plain {
+        fn trace(&mut self, requests: &[Request]) -> Result<Vec<Answer>, Stop> {
+            if !requests.is_empty() {
+                self.0.borrow_mut().push(format!("trace {}", requests.len()));
+            }
+            let answer = |r: &Request| {
+                let mut a = Answer::nothing(r.origin, r.direction.normalize());
+                a.value = Rgb::splat(r.origin.x as f32);
+                a
+            };
+            Ok(requests.iter().map(answer).collect())
+        }
+
+        fn name(&self, _: ObjectId) -> Cow<'_, str> {
+            "it".into()
+        }
+    }
+
+    /// Output that notes when it is flushed, and how many bytes came.
+    struct Watched(Rc<RefCell<Vec<String>>>, Vec<u8>, usize);
+
+    impl Write for Watched {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            self.1.extend_from_slice(bytes);
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> std::io::Result<()> {
+            self.0.borrow_mut().push(format!("flush {}", (self.1.len() - self.2) / 4));
+            self.2 = self.1.len();
+            Ok(())
+        }
+    }
+
+    fn run(set: impl Fn(&mut RayOptions), input: &str) -> (Vec<String>, Vec<f32>, bool) {
+        let mut options = RayOptions::new(1);
+        options.format = OutputFormat::Float;
+        options.common.output = Output::Average;
+        set(&mut options);
+        let spec = OutputSpec::parse(&options.fields).unwrap();
+        let records = RecordWriter::new(&spec, Conversion::new(options.common.output, false), options.format);
+        let log = Rc::new(RefCell::new(Vec::new()));
+        let mut out = Watched(Rc::clone(&log), Vec::new(), 0);
+        let rays = RayReader::new(input.as_bytes(), InputFormat::Ascii);
+        let complete = Stream::new(&options, &spec).run(rays, &records, &mut Plain(Rc::clone(&log)), &mut out).unwrap();
+        let values = out.1.chunks_exact(4).map(|b| f32::from_ne_bytes(b.try_into().unwrap())).collect();
+        let log = log.borrow().clone();
+        (log, values, complete)
+    }
+
+    fn rays(n: usize) -> String {
+        (1..=n).map(|i| format!("{i} 0 0 0 0 2\n")).collect::<Vec<_>>().concat()
+    }
+
+    #[test]
+    fn batches_grow_without_flushing() {
+        let (log, values, complete) = run(|_| {}, &rays(9));
+        assert_eq!(log, ["trace 1", "trace 1", "trace 2", "trace 4", "trace 1", "flush 9"]);
+        assert_eq!(values, [1., 2., 3., 4., 5., 6., 7., 8., 9.]);
+        assert!(complete);
+    }
+
+    #[test]
+    fn every_ray_is_flushed_if_that_is_asked() {
+        let (log, ..) = run(|o| o.width = 1, &rays(3));
+        assert_eq!(log, ["trace 1", "flush 1", "trace 1", "flush 1", "trace 1", "flush 1", "flush 0"]);
+        let (log, ..) = run(|o| o.width = 4, &rays(6));
+        assert_eq!(log, ["trace 1", "trace 1", "trace 2", "flush 4", "trace 2", "flush 2"]);
+    }
+
+    #[test]
+    fn a_zero_direction_flushes_what_is_pending() {
+        let zero = "9 9 9 0 0 0\n";
+        let input = format!("{zero}{}{zero}{zero}5 0 0 0 1 0\n", rays(1));
+        let (log, values, _) = run(|_| {}, &input);
+        // The first and the third have nothing pending.
+        assert_eq!(log, ["trace 1", "flush 3", "trace 1", "flush 2"]);
+        assert_eq!(values, [0., 1., 0., 0., 5.]);
+        let (_, values, _) = run(|o| o.fields = "od".into(), "1 2 3 0 0 2 9 9 9 0 0 0");
+        assert_eq!(values, [1., 2., 3., 0., 0., 1., 1., 2., 3., 0., 0., 1.]);
+    }
+
+    #[test]
+    fn the_number_of_records_is_kept() {
+        let (_, values, complete) = run(|o| o.height = 2, &rays(5));
+        assert_eq!((values.len(), complete), (2, true));
+        let (log, values, complete) = run(|o| (o.width, o.height) = (2, 2), &rays(5));
+        assert_eq!((values.len(), complete), (4, true));
+        assert_eq!(log.last().unwrap(), "flush 4");
+        let (_, values, complete) = run(|o| (o.width, o.height) = (2, 3), &format!("0 0 0 0 0 0 {}", rays(4)));
+        assert_eq!((values.len(), complete), (5, false));
+    }
+}

@@ -1,0 +1,274 @@
+//! What a rendering program does around its work: reading the command line, messages, signals, the exit status.
+
+use ambit_cli::{
+    About, Common, ConsoleMessages, Failure, Features, Outside, Process, Progress, Row, Scan, Signals, VERSION,
+    attach_error_file, completions, defaults, long_help, man_page, scan,
+};
+use ambit_file::{Library, SearchPath, Zone, base_name, capture_lines, command_line};
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::SystemTime;
+
+/// Why a program ends before its work is done.
+#[derive(Debug)]
+pub(crate) enum Stop {
+    /// An error.
+    Failure(Failure),
+    /// A signal, of which the watcher has told already.
+    Signal,
+    /// Nobody reads the output any more.
+    BrokenPipe,
+}
+
+impl From<Failure> for Stop {
+    fn from(failure: Failure) -> Self {
+        Self::Failure(failure)
+    }
+}
+
+impl Stop {
+    /// An error of writing; `what` as in `write error`.
+    pub(crate) fn writing(what: &str, error: &io::Error) -> Self {
+        if error.kind() == io::ErrorKind::BrokenPipe {
+            Self::BrokenPipe
+        } else {
+            Self::Failure(Failure::system(what, error))
+        }
+    }
+}
+
+/// How far the work is, for reports from any thread.
+#[derive(Debug)]
+pub(crate) struct Meter {
+    progress: Progress,
+    rays: AtomicU64,
+    /// Percentage × 2³².
+    percent: AtomicU64,
+}
+
+impl Meter {
+    const ONE: f64 = 4294967296.0;
+
+    /// Sets the number of rays.
+    pub(crate) fn set_rays(&self, rays: u64) {
+        self.rays.store(rays, Ordering::Relaxed);
+    }
+
+    /// Sets the percentage.
+    pub(crate) fn set_percent(&self, percent: f64) {
+        self.percent.store((percent * Self::ONE) as u64, Ordering::Relaxed);
+    }
+
+    /// The report as of now.
+    pub(crate) fn line(&self) -> String {
+        self.progress.line(self.rays.load(Ordering::Relaxed), self.percent())
+    }
+
+    /// The percentage.
+    pub(crate) fn percent(&self) -> f64 {
+        self.percent.load(Ordering::Relaxed) as f64 / Self::ONE
+    }
+
+    /// Seconds since the start.
+    pub(crate) fn seconds(&self) -> f64 {
+        self.progress.elapsed().as_secs_f64()
+    }
+
+    /// Prints the report on standard error.
+    pub(crate) fn report(&self) {
+        let _ = writeln!(io::stderr(), "{}", self.line());
+    }
+}
+
+/// What a program is called by.
+pub(crate) struct Tool<S: 'static> {
+    pub(crate) about: About,
+    pub(crate) features: Features,
+    pub(crate) table: Vec<Row<S>>,
+}
+
+/// A running program.
+pub(crate) struct Session {
+    /// Name as called, without folders.
+    pub(crate) program: String,
+    /// Options after expansion.
+    pub(crate) words: Vec<String>,
+    /// Octree argument.
+    pub(crate) octree: Option<String>,
+    /// Where auxiliary files are.
+    pub(crate) search: SearchPath,
+    /// Prints messages.
+    pub(crate) messages: ConsoleMessages,
+    /// For reports.
+    pub(crate) meter: Arc<Meter>,
+    stop: Arc<AtomicBool>,
+    signals: Option<Signals>,
+}
+
+/// The name and the words of a command line; bytes that are no text are replaced.
+pub(crate) fn split(mut arguments: impl Iterator<Item = OsString>) -> (String, Vec<String>) {
+    let text = |word: OsString| word.to_string_lossy().into_owned();
+    let called = arguments.next().map(text).unwrap_or_default();
+    let program = String::from_utf8_lossy(base_name(called.as_bytes())).into_owned();
+    (program, arguments.map(text).collect())
+}
+
+impl Session {
+    /// A session that knows nothing but its name.
+    pub(crate) fn new(program: String, reports: bool) -> Self {
+        let variable = |name| std::env::var(name).ok();
+        let search = SearchPath::new(variable("RAYPATH").as_deref(), variable("HOME").as_deref(), Library::NONE);
+        let meter = Meter { progress: Progress::start(&program), rays: AtomicU64::new(0), percent: AtomicU64::new(0) };
+        let mut session = Self {
+            messages: ConsoleMessages { program: program.clone(), warnings: true },
+            program,
+            words: Vec::new(),
+            octree: None,
+            search,
+            meter: Arc::new(meter),
+            stop: Arc::new(AtomicBool::new(false)),
+            signals: None,
+        };
+        session.watch(reports);
+        session
+    }
+
+    fn watch(&mut self, reports: bool) {
+        let (messages, stop, meter) = (self.messages.clone(), Arc::clone(&self.stop), Arc::clone(&self.meter));
+        let on_end = move |signal: ambit_cli::Caught| {
+            messages.print(format_args!("signal - {}", signal.name()));
+            stop.store(true, Ordering::Release);
+        };
+        let on_report = move || {
+            if reports {
+                meter.report();
+            }
+        };
+        // Without them the program does its work all the same.
+        self.signals = Signals::watch(on_end, on_report).ok();
+    }
+
+    /// Reads the command line. Returns false if it was answered and there is nothing left to do.
+    pub(crate) fn read<S>(&mut self, words: Vec<String>, tool: &Tool<S>, settings: &mut S) -> Result<bool, Stop>
+    where
+        S: ambit_cli::Carries<ambit_cli::Rendering> + ambit_cli::Carries<Common>,
+    {
+        if words.first().is_some_and(|w| w == "-features") {
+            let (text, missing) = tool.features.answer(&words[1..]);
+            print(&text)?;
+            return match missing {
+                None => Ok(false),
+                Some(text) => {
+                    // No class word here.
+                    self.messages.print(text);
+                    Err(Stop::Failure(Failure { class: ambit_cli::Class::User, text: String::new() }))
+                }
+            };
+        }
+        let search = &self.search;
+        let read = |name: &str| {
+            let found = search.find_path(name).ok_or_else(|| io::Error::from_raw_os_error(NO_SUCH_FILE))?;
+            std::fs::read(found)
+        };
+        let outside: &dyn Outside = &Process { program: &self.program, read: &read };
+        let result = scan(words, &tool.table, settings, outside);
+        let common: &mut Common = settings.part();
+        self.messages.warnings = common.warnings;
+        let rendering: &mut ambit_cli::Rendering = settings.part();
+        for notice in rendering.notices.drain(..) {
+            ambit_base::Notify::warn(&self.messages, &notice);
+        }
+        match result? {
+            Scan::Run { octree, words } => {
+                (self.octree, self.words) = (octree, words);
+                return Ok(true);
+            }
+            Scan::Version => print(&format!("{VERSION}\n"))?,
+            Scan::Defaults => print(&defaults(&tool.table, settings))?,
+            Scan::Help => print(&long_help(&tool.about, &tool.table))?,
+            Scan::Man => print(&String::from_utf8_lossy(&man_page(&tool.about, &tool.table)))?,
+            Scan::Completions(shell) => {
+                let script = completions(&tool.about, &tool.table, &shell)
+                    .ok_or_else(|| Failure::user(format!("no completions for shell '{shell}' (bash, zsh, fish)")))?;
+                print(&String::from_utf8_lossy(&script))?;
+            }
+        }
+        Ok(false)
+    }
+
+    /// Sets up what comes before the work: error file and threads; refuses what is not served.
+    pub(crate) fn prepare(&mut self, common: &Common) -> Result<(), Stop> {
+        if common.persist.is_some() {
+            return Err(Failure::unsupported("persist mode (-P, -PP) is").into());
+        }
+        if let Some(file) = &common.error_file {
+            let words = self.words.iter().chain(&self.octree);
+            let command = command_line(self.program.as_bytes(), words);
+            if attach_error_file(file, &String::from_utf8_lossy(&command)).is_err() {
+                // As Radiance: without a word.
+                return Err(Stop::Failure(Failure { class: ambit_cli::Class::System, text: String::new() }));
+            }
+        }
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(common.threads())
+            .build_global()
+            .map_err(|e| Failure::internal(format!("cannot start threads: {e}")))?;
+        Ok(())
+    }
+
+    /// From here on there are files to close: a signal leaves time for that.
+    pub(crate) fn begin_work(&self) {
+        if let Some(signals) = &self.signals {
+            signals.begin_work();
+        }
+    }
+
+    /// An error if a signal has asked the work to stop.
+    pub(crate) fn check(&self) -> Result<(), Stop> {
+        if self.stop.load(Ordering::Acquire) { Err(Stop::Signal) } else { Ok(()) }
+    }
+
+    /// Header lines of this command: itself and the software.
+    pub(crate) fn command_lines(&self) -> [Vec<u8>; 2] {
+        [command_line(self.program.as_bytes(), &self.words), format!("SOFTWARE= {VERSION}").into_bytes()]
+    }
+
+    /// Header lines of the time.
+    pub(crate) fn time_lines() -> [String; 2] {
+        capture_lines(SystemTime::now(), &Zone::from_variable(std::env::var("TZ").ok().as_deref()))
+    }
+
+    /// Tells how it ended and returns the status.
+    pub(crate) fn end(&self, result: Result<(), Stop>) -> ExitCode {
+        if let Some(signals) = &self.signals {
+            signals.finish();
+        }
+        match result {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(Stop::Signal) => ExitCode::from(3),
+            Err(Stop::BrokenPipe) => {
+                self.messages.print("signal - Broken pipe");
+                ExitCode::from(3)
+            }
+            Err(Stop::Failure(failure)) => {
+                if !failure.text.is_empty() {
+                    self.messages.fail(&failure);
+                }
+                ExitCode::from(failure.class.status())
+            }
+        }
+    }
+}
+
+/// The system's number for "No such file or directory".
+const NO_SUCH_FILE: i32 = 2;
+
+fn print(text: &str) -> Result<(), Stop> {
+    io::stdout()
+        .write_all(text.as_bytes())
+        .and_then(|()| io::stdout().flush())
+        .map_err(|e| Stop::writing("write error", &e))
+}
