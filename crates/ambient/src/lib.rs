@@ -35,6 +35,7 @@ mod record;
 mod sampler;
 mod select;
 mod separation;
+mod sieve;
 mod store;
 mod supersample;
 #[cfg(test)]

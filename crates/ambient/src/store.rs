@@ -1,18 +1,25 @@
-//! The octree of records: independent of surfaces, a record in the one cell whose edge is one to two times its reach.
+//! The octree of records, independent of surfaces.
 //!
-//! Everything lies in flat arrays. A node's records are contiguous, split in the part every comparison reads (one cache
-//! line) and the part only records that qualify are asked for.
+//! A record's size class is the depth at which cells have one to two times its reach (Ward, Rubinstein, Clear 1988). It
+//! is listed one level above that, in every cell that its reach touches (at most eight), so that a look-up follows one
+//! path from the root to a leaf and reads one list a level.
+//!
+//! Everything lies in flat arrays: the lists are runs of columns that are compared several records at a time; what
+//! passes is tested on the record itself, and its value read last.
 
 use crate::lookup::{Asked, Sum, accumulate};
 use crate::params::Limits;
 use crate::record::Record;
 use crate::sampler::{Query, Sampler};
+use crate::sieve::{LANES, Probe, Sieve};
 use ambit_base::DVec3;
 
 /// Weight from which the records of smaller cells suffice and longer-reaching ones are not searched.
 const GOOD_ENOUGH: f32 = 0.05;
 /// Depth at which insertion stops whatever the radius: below it cells differ by less than the rounding of coordinates.
 const MAX_DEPTH: u32 = 48;
+/// Relative margin between the two ways of finding a cell.
+const MARGIN: f64 = 1e-9;
 /// Records nearer than this fraction of their reach, with equal level, weight and normal, are duplicates.
 const DUPLICATE: f64 = 1e-4;
 
@@ -39,16 +46,6 @@ pub(crate) struct Derived {
 }
 
 impl Place {
-    const VACANT: Self = Self {
-        position: [0.0; 3],
-        normal: [0.0; 3],
-        u: [0.0; 3],
-        inverse_radii: [0.0; 2],
-        weight: 0.0,
-        level: 0,
-        corralled: 0,
-    };
-
     fn of(record: &Record) -> Self {
         Self {
             position: record.position.to_array(),
@@ -63,8 +60,6 @@ impl Place {
 }
 
 impl Derived {
-    const VACANT: Self = Self { gradient: [0.0; 2], rotation: [0.0; 2], value: [0.0; 3], corral: 0 };
-
     fn of(record: &Record) -> Self {
         Self {
             gradient: record.gradient,
@@ -79,7 +74,7 @@ impl Derived {
 struct Node {
     /// Index of the first of eight children; 0: none (the root is nobody's child).
     children: u32,
-    /// The node's records in the arrays of the store.
+    /// The node's list in the columns of the store.
     start: u32,
     len: u32,
     capacity: u32,
@@ -93,6 +88,9 @@ pub(crate) struct Store {
     nodes: Vec<Node>,
     places: Vec<Place>,
     derived: Vec<Derived>,
+    /// The lists: what the coarse test reads, and which record it is.
+    sieve: Sieve,
+    listed: Vec<u32>,
     /// Segments given up by lists that grew: entry k holds the starts of those of 2^k records.
     vacant: Vec<Vec<u32>>,
 }
@@ -100,7 +98,16 @@ pub(crate) struct Store {
 impl Store {
     /// An empty tree over the cube with the given low corner and edge.
     pub(crate) fn new(corner: DVec3, edge: f64) -> Self {
-        Self { corner, edge, nodes: vec![Node::default()], places: Vec::new(), derived: Vec::new(), vacant: Vec::new() }
+        Self {
+            corner,
+            edge,
+            nodes: vec![Node::default()],
+            places: Vec::new(),
+            derived: Vec::new(),
+            sieve: Sieve::default(),
+            listed: Vec::new(),
+            vacant: Vec::new(),
+        }
     }
 
     /// An empty tree over the same cube.
@@ -108,50 +115,88 @@ impl Store {
         Self::new(self.corner, self.edge)
     }
 
-    /// Files a record in the cell of its reach. False if an equal one is there already.
+    /// Files a record in the cells of its reach. False if an equal one is there already.
     pub(crate) fn insert(&mut self, record: &Record, accuracy: f64) -> bool {
         let reach = f64::from(record.radii[1]) * accuracy;
-        let (mut edge, mut corner, mut node) = (self.edge, self.corner, 0usize);
-        let mut depth = 0;
-        while edge * 0.5 > reach && depth < MAX_DEPTH {
+        let (mut edge, mut depth) = (self.edge, 0u32);
+        while edge * 0.25 > reach && depth < MAX_DEPTH {
             edge *= 0.5;
             depth += 1;
+        }
+        let place = Place::of(record);
+        if self.is_duplicate(record, &place, depth, accuracy) {
+            return false;
+        }
+        let id = self.places.len() as u32;
+        self.places.push(place);
+        self.derived.push(Derived::of(record));
+        // Cells are found by halving in look-ups and by division here: the margin covers the difference.
+        let margin = DVec3::splat(reach * (1.0 + MARGIN) + self.edge * MARGIN);
+        let last = (1u64 << depth) - 1;
+        let cell = |p: DVec3| ((p - self.corner) / edge).to_array().map(|c| (c.max(0.0) as u64).min(last));
+        let (low, high) = (cell(record.position - margin), cell(record.position + margin));
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                for z in low[2]..=high[2] {
+                    let node = self.cell([x, y, z], depth);
+                    let corner = self.corner + DVec3::new(x as f64, y as f64, z as f64) * edge;
+                    self.list(node, id, record.position - corner, reach);
+                }
+            }
+        }
+        true
+    }
+
+    /// True if the cell at `depth` around a record lists one like it.
+    fn is_duplicate(&self, record: &Record, place: &Place, depth: u32, accuracy: f64) -> bool {
+        let (mut edge, mut corner, mut node) = (self.edge, self.corner, &self.nodes[0]);
+        for _ in 0..depth {
+            if node.children == 0 {
+                return false;
+            }
+            edge *= 0.5;
             let middle = corner + edge;
             let upper = record.position.cmpgt(middle);
             corner = DVec3::select(upper, middle, corner);
-            if self.nodes[node].children == 0 {
-                self.nodes[node].children = self.nodes.len() as u32;
-                self.nodes.resize(self.nodes.len() + 8, Node::default());
-            }
-            node = self.nodes[node].children as usize + upper.bitmask() as usize;
+            node = &self.nodes[node.children as usize + upper.bitmask() as usize];
         }
-        let Node { start, len, .. } = self.nodes[node];
-        let place = Place::of(record);
-        let list = &self.places[start as usize..(start + len) as usize];
         let close = DUPLICATE * accuracy * f64::from(record.radii[0]);
-        let duplicate = |p: &Place| {
+        self.listed[node.start as usize..(node.start + node.len) as usize].iter().any(|&i| {
+            let p = &self.places[i as usize];
             p.level == place.level
                 && p.weight == place.weight
                 && p.normal == place.normal
                 && (DVec3::from_array(p.position) - record.position).length_squared() < close * close
-        };
-        if list.iter().any(duplicate) {
-            return false;
-        }
-        // Level ascending, weight descending, a new record before its equals.
-        let at = list.partition_point(|p| (p.level, -p.weight) < (place.level, -place.weight));
-        self.put(node, at, place, Derived::of(record));
-        true
+        })
     }
 
-    fn put(&mut self, node: usize, at: usize, place: Place, derived: Derived) {
+    /// The node of a cell, given by its coordinates in a grid of 2^depth cells a side; made if need be.
+    fn cell(&mut self, at: [u64; 3], depth: u32) -> usize {
+        let mut node = 0usize;
+        for level in (0..depth).rev() {
+            if self.nodes[node].children == 0 {
+                self.nodes[node].children = self.nodes.len() as u32;
+                self.nodes.resize(self.nodes.len() + 8, Node::default());
+            }
+            let half = |axis: usize| (at[axis] >> level & 1) as usize;
+            node = self.nodes[node].children as usize + (half(0) | half(1) << 1 | half(2) << 2);
+        }
+        node
+    }
+
+    /// Enters a record in a node's list: level ascending, weight descending, a new record before its equals.
+    fn list(&mut self, node: usize, id: u32, relative: DVec3, reach: f64) {
+        let place = self.places[id as usize];
         let Node { start, len, capacity, .. } = self.nodes[node];
+        let list = &self.listed[start as usize..(start + len) as usize];
+        let key = |p: &Place| (p.level, -p.weight);
+        let at = list.partition_point(|&i| key(&self.places[i as usize]) < key(&place));
         if len == capacity {
-            let grown = (capacity * 2).max(1);
+            let grown = (capacity * 2).max(LANES as u32);
             let fresh = self.segment(grown);
             let (from, to) = (start as usize, fresh as usize);
-            self.places.copy_within(from..from + len as usize, to);
-            self.derived.copy_within(from..from + len as usize, to);
+            self.listed.copy_within(from..from + len as usize, to);
+            self.sieve.copy_within(from..from + len as usize, to);
             if capacity > 0 {
                 let class = capacity.trailing_zeros() as usize;
                 if self.vacant.len() <= class {
@@ -164,21 +209,22 @@ impl Store {
         }
         let first = self.nodes[node].start as usize;
         let end = first + len as usize;
-        self.places.copy_within(first + at..end, first + at + 1);
-        self.derived.copy_within(first + at..end, first + at + 1);
-        self.places[first + at] = place;
-        self.derived[first + at] = derived;
+        self.listed.copy_within(first + at..end, first + at + 1);
+        self.sieve.copy_within(first + at..end, first + at + 1);
+        self.listed[first + at] = id;
+        self.sieve.set(first + at, relative, place.normal, reach);
         self.nodes[node].len += 1;
     }
 
-    /// Room for `capacity` records, a power of two.
+    /// Room for a list of `capacity` records, a power of two.
     fn segment(&mut self, capacity: u32) -> u32 {
         if let Some(start) = self.vacant.get_mut(capacity.trailing_zeros() as usize).and_then(Vec::pop) {
+            self.sieve.clear(start as usize..(start + capacity) as usize);
             return start;
         }
-        let start = self.places.len();
-        self.places.resize(start + capacity as usize, Place::VACANT);
-        self.derived.resize(start + capacity as usize, Derived::VACANT);
+        let start = self.listed.len();
+        self.listed.resize(start + capacity as usize, 0);
+        self.sieve.resize(start + capacity as usize);
         start as u32
     }
 
@@ -204,52 +250,45 @@ struct Search<'a, S: Sampler> {
 }
 
 impl<S: Sampler> Search<'_, S> {
-    /// Children first, then the node's own list unless the children gave enough; returns the weight found.
+    /// The child around the point first, then the node's own list unless that gave enough; returns the weight found.
     fn node(&self, index: usize, corner: DVec3, edge: f64, sum: &mut Sum) -> f32 {
         let node = self.store.nodes[index];
         let mut weight = 0.0;
         if node.children != 0 {
             let half = edge * 0.5;
             let middle = corner + half;
-            // A child is entered if the point lies in its cube grown by its own edge on every side.
-            let within = |low: DVec3| (self.inside.cmpge(low - half) & self.inside.cmple(low + 2.0 * half)).bitmask();
-            let (lower, upper) = (within(corner), within(middle));
-            for k in 0..8u32 {
-                // Per axis, the lower or the upper half must be within reach.
-                if (k & upper) | (!k & lower & 7) != 7 {
-                    continue;
+            let upper = self.inside.cmpgt(middle);
+            let child = node.children as usize + upper.bitmask() as usize;
+            let next = &self.store.nodes[child];
+            if next.children != 0 || next.len != 0 {
+                weight = self.node(child, DVec3::select(upper, middle, corner), half, sum);
+                // The list holds records of the class whose cells have half this node's edge.
+                if weight >= GOOD_ENOUGH && 0.5 * half * self.limits.accuracy > self.limits.min_radius {
+                    return weight;
                 }
-                let child = node.children as usize + k as usize;
-                let next = self.store.nodes[child];
-                if next.children != 0 || next.len != 0 {
-                    let low = DVec3::new(
-                        if k & 1 != 0 { middle.x } else { corner.x },
-                        if k & 2 != 0 { middle.y } else { corner.y },
-                        if k & 4 != 0 { middle.z } else { corner.z },
-                    );
-                    weight += self.node(child, low, half, sum);
-                }
-            }
-            if weight >= GOOD_ENOUGH && half * self.limits.accuracy > self.limits.min_radius {
-                return weight;
             }
         }
-        weight + self.list(node, sum)
+        if node.len == 0 { weight } else { weight + self.list(node, corner, sum) }
     }
 
-    fn list(&self, node: Node, sum: &mut Sum) -> f32 {
-        let range = node.start as usize..(node.start + node.len) as usize;
-        let (places, derived) = (&self.store.places[range.clone()], &self.store.derived[range]);
-        let Some(first) = places.first() else { return 0.0 };
+    fn list(&self, node: Node, corner: DVec3, sum: &mut Sum) -> f32 {
+        let store = self.store;
+        let start = node.start as usize;
+        let range = start..start + (node.len as usize).next_multiple_of(LANES);
+        let first = &store.places[store.listed[start] as usize];
         let angle = self.asked.angle_for(first.level);
+        let probe = Probe::new(self.query.position - corner, self.query.normal.as_vec3(), angle);
         let mut weight = 0.0;
-        for (place, derived) in places.iter().zip(derived) {
+        store.sieve.pass(range, &probe, |i| {
+            let id = store.listed[start + i] as usize;
+            let place = &store.places[id];
             let deeper = place.level > self.asked.level;
             if deeper || place.level == self.asked.level && place.weight < self.asked.least_weight {
-                break;
+                return false;
             }
-            weight += accumulate(&self.asked, angle, place, derived, self.sampler, self.query, sum);
-        }
+            weight += accumulate(&self.asked, angle, place, &store.derived[id], self.sampler, self.query, sum);
+            true
+        });
         weight
     }
 }
