@@ -14,8 +14,11 @@ use ambit_base::{Colour, DVec3, EPSILON, Rgb};
 const FLOOR: f64 = 0.01;
 /// Mean radiances up to this are black: products of sample radiances with it stay normal numbers.
 const BLACK: f64 = 1e-30;
-/// Share of the border that must see something nearer than the smallest reach to hold the radius down to it.
+/// Share of the border that must see something very near to hold the radius down to the smallest.
 const CROWDED: f64 = 0.1;
+/// What is very near, as a fraction of the smallest reach R₋a. At 1 corners would take up to a tenth more records than
+/// in Radiance; a point this close to a wall it should not see past is within the rounding of modelled surfaces.
+const VERY_NEAR: f64 = 0.1;
 /// Normals whose cosine is at least this count as one: no texture.
 const UNTEXTURED: f64 = 0.9999;
 
@@ -82,7 +85,7 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
         let far = 10.0 * limits.edge + 1000.0;
         let points: Vec<DVec3> = directions.iter().zip(cells).map(|(d, c)| *d * c.distance.min(far)).collect();
         let derivatives = mesh(n, &points, &values);
-        let crowd = 1.0 / (limits.min_radius * limits.accuracy);
+        let crowd = 1.0 / (VERY_NEAR * limits.min_radius * limits.accuracy);
         let crowded = border(n).filter(|&c| nearness[c] > crowd).count() as f64;
         let least = crowded > CROWDED * border(n).count() as f64;
         let shape = if derivatives.is_finite() {

@@ -14,7 +14,8 @@
 //!
 //! All in the hemisphere's frame with x at the origin, so N = z. An inner edge counts with the difference of its two
 //! triangles' radiances. From its rim the mesh is continued straight down to the horizon, as walls do: uniform
-//! surroundings then have no derivatives, where Radiance's open rim gives gradients of up to 0.65/m near walls.
+//! surroundings then have no derivatives, where Radiance's open rim gives gradients of up to 0.65/m near walls. From 500 samples on, record
+//! counts stay within a few per cent of Radiance's (with 64 samples they are up to a fifth higher).
 
 use ambit_base::DVec3;
 use std::f64::consts::FRAC_1_PI;

@@ -109,7 +109,7 @@ impl Limits {
     pub fn opened_angle(&self, weight: f32) -> f64 {
         if weight < 0.6 {
             let right = std::f64::consts::FRAC_PI_2;
-            right - (right - self.max_angle) * f64::from(weight.max(0.0)).powf(0.13)
+            right - (right - self.max_angle) * f64::from(weight.max(0.0).powf(0.13))
         } else {
             self.max_angle
         }
