@@ -7,12 +7,13 @@
 //! then the volumes that the cube is not inside of, then the others. Here each cube sees all its arrivals at once, in
 //! the order they would have come in, so that every object is tested once a cube and subtrees can be built in parallel.
 
-use crate::overlap::Relation;
+use crate::overlap::{Octants, Relation};
 use crate::tree::{self, BRANCH, DEEPEST, EMPTY, MOST_IN_SET, Node, Tree};
 use crate::{Cube, Geometry};
 use ambit_base::EPSILON;
 use ambit_scene::{ObjectId, Scene};
 use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
 
 /// When cubes are divided.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,7 +60,16 @@ const INSIDE: u32 = 1 << 31;
 
 /// Builds the tree of the objects of `geometry` in a cube.
 pub fn build(scene: &Scene, geometry: &Geometry, cube: Cube, limits: Limits) -> Result<Tree, BuildError> {
-    extend(scene, geometry, cube, limits, &Tree::default(), &Geometry::starting_at(0))
+    Ok(extend(scene, geometry, cube, limits, &Tree::default(), &Geometry::starting_at(0))?.tree)
+}
+
+/// A tree that grew.
+#[derive(Clone, Debug)]
+pub struct Extended {
+    /// With all objects, old and new.
+    pub tree: Tree,
+    /// Those of the old ones that had to be looked at, because their cubes were divided; ascending.
+    pub moved: Vec<ObjectId>,
 }
 
 /// Inserts the objects of `geometry` into a tree of other, earlier objects; `present` has the geometry of those.
@@ -70,16 +80,19 @@ pub fn extend(
     limits: Limits,
     tree: &Tree,
     present: &Geometry,
-) -> Result<Tree, BuildError> {
+) -> Result<Extended, BuildError> {
     let smallest = cube.edge / limits.resolution as f64 - EPSILON;
-    let builder = Builder { scene, geometry, present, limits, smallest };
+    let builder = Builder { scene, geometry, present, limits, smallest, moved: Mutex::default() };
     let mut arrivals: Vec<u32> = geometry.placed().collect();
-    arrivals = builder.select(&cube, &arrivals);
+    arrivals = arrivals.iter().filter_map(|&a| builder.test(&cube, a)).collect();
     let mut out = Vec::with_capacity(tree.words.len());
     let mut old = Old { words: &tree.words, at: 0 };
     builder.place(&cube, Some(&mut old), &mut arrivals, 0, 0, &mut out)?;
     out.shrink_to_fit();
-    Ok(Tree { words: out })
+    let mut moved = builder.moved.into_inner().unwrap_or_else(PoisonError::into_inner);
+    moved.sort_unstable();
+    moved.dedup();
+    Ok(Extended { tree: Tree { words: out }, moved })
 }
 
 /// A place in the tree that is being extended.
@@ -117,6 +130,8 @@ struct Builder<'a> {
     limits: Limits,
     /// Half edges below this are not divided.
     smallest: f64,
+    /// Members of old leaves that were divided.
+    moved: Mutex<Vec<ObjectId>>,
 }
 
 /// What the objects of a leaf come to.
@@ -157,7 +172,7 @@ impl Builder<'_> {
                 out.push((present.len() + stack.len() - start) as u32);
                 out.extend_from_slice(present);
                 out.extend(stack[start..].iter().map(|id| id & !INSIDE));
-                if self.geometry.has_volumes() {
+                if self.has_volumes() {
                     out[from + 1..].sort_unstable();
                 }
                 Ok(())
@@ -165,6 +180,9 @@ impl Builder<'_> {
             Fate::Divide(order) => {
                 if depth >= MOST_DIVISIONS {
                     return Err(BuildError::TooDeep { objects: self.limits.objects });
+                }
+                if !present.is_empty() {
+                    self.moved.lock().unwrap_or_else(PoisonError::into_inner).extend(present);
                 }
                 if let Some(order) = order {
                     stack.truncate(start);
@@ -191,13 +209,15 @@ impl Builder<'_> {
         }
         let branch = out.len();
         out.push(BRANCH);
+        let masks = self.masks(cube, &stack[start..]);
         if old.is_none() && stack.len() - start > PARALLEL_ABOVE {
             let arrivals = &stack[start..];
             let children: Vec<Vec<u32>> = (0..8)
                 .into_par_iter()
                 .map(|number| {
                     let part = cube.child(number);
-                    let mut own = self.select(&part, arrivals);
+                    let mut own: Vec<u32> =
+                        (0..arrivals.len()).filter_map(|i| self.handed(arrivals[i], masks[i], number, &part)).collect();
                     let mut words = Vec::new();
                     self.place(&part, None, &mut own, 0, depth + 1, &mut words)?;
                     Ok(words)
@@ -211,7 +231,7 @@ impl Builder<'_> {
             for number in 0..8 {
                 let part = cube.child(number);
                 for i in start..end {
-                    if let Some(arrival) = self.test(&part, stack[i]) {
+                    if let Some(arrival) = self.handed(stack[i], masks[i - start], number, &part) {
                         stack.push(arrival);
                     }
                 }
@@ -223,12 +243,33 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// The arrivals that meet a cube.
-    fn select(&self, cube: &Cube, arrivals: &[u32]) -> Vec<u32> {
-        arrivals.iter().filter_map(|&a| self.test(cube, a)).collect()
+    /// Which children each of the arrivals meets, one bit a child.
+    fn masks(&self, cube: &Cube, arrivals: &[u32]) -> Vec<u8> {
+        let octants = Octants::new(cube);
+        let mask = |&arrival: &u32| {
+            let id = arrival & !INSIDE;
+            self.owner(id).children(self.scene, id, cube, &octants, self.smallest)
+        };
+        if arrivals.len() > PARALLEL_ABOVE {
+            arrivals.par_iter().with_min_len(PARALLEL_ABOVE / 8).map(mask).collect()
+        } else {
+            arrivals.iter().map(mask).collect()
+        }
     }
 
+    /// What a child is handed of an arrival, given the children that it meets.
     #[inline]
+    fn handed(&self, arrival: u32, mask: u8, number: usize, child: &Cube) -> Option<u32> {
+        let id = arrival & !INSIDE;
+        if mask >> number & 1 == 0 {
+            None
+        } else if self.has_volumes() && self.owner(id).is_volume(id) {
+            self.test(child, arrival)
+        } else {
+            Some(id)
+        }
+    }
+
     fn test(&self, cube: &Cube, arrival: u32) -> Option<u32> {
         let id = arrival & !INSIDE;
         match self.relation(id, cube) {
@@ -245,6 +286,10 @@ impl Builder<'_> {
     #[inline]
     fn owner(&self, id: ObjectId) -> &Geometry {
         if id < self.geometry.first() { self.present } else { self.geometry }
+    }
+
+    fn has_volumes(&self) -> bool {
+        self.geometry.has_volumes() || self.present.has_volumes()
     }
 
     /// Decides between leaf and branch for a cube without children, as insertion one by one would.
@@ -268,8 +313,7 @@ impl Builder<'_> {
     /// The order in which the children see the objects of a cube that arrival `last` divides; none if it is that of
     /// the arrivals themselves.
     fn order(&self, cube: &Cube, present: &[ObjectId], arrivals: &[u32], last: usize) -> Option<Vec<u32>> {
-        let volumes = self.geometry.has_volumes() || self.present.has_volumes();
-        if !volumes {
+        if !self.has_volumes() {
             return (!present.is_empty()).then(|| [present, arrivals].concat());
         }
         let mut members: Vec<u32> = [present, &arrivals[..last]].concat();
@@ -293,3 +337,6 @@ impl Builder<'_> {
         Some(order)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -30,8 +30,9 @@ impl Cube {
         let Some(b) = bounds else { return Self::default() };
         let lo = b.min - MARGIN;
         let hi = b.max + MARGIN;
-        let size = hi - lo;
-        // The comparisons of the axes in order, so that the first of equal sides counts.
+        let mut size = hi - lo;
+        // Radiance 6.0a as distributed adds up the last side in this order; far from the origin the digits show it.
+        size.z = (hi.z - b.min.z) + MARGIN;
         let edge = size.x.max(size.y).max(size.z);
         Self { origin: (hi + lo - edge) * 0.5, edge }
     }
@@ -117,6 +118,8 @@ mod tests {
         let b = Bounds { min: DVec3::ZERO, max: DVec3::new(4.0, 4.0, 3.0) };
         let text = Cube::around(Some(b)).to_text();
         assert_eq!(text, ["-9.99999999984e-06", "-9.99999999984e-06", "-0.50001", "4.00002"]);
+        let point = Bounds { min: DVec3::ONE, max: DVec3::ONE };
+        assert_eq!(Cube::around(Some(point)).to_text(), ["0.99999", "0.99999", "0.99999", "2.00000000001e-05"]);
         assert_eq!(Cube::around(None).to_text(), ["0", "0", "0", "0"]);
         assert_eq!(Cube::given(DVec3::splat(-1.0), 8.0).to_text()[3], "8.00002");
     }

@@ -1,6 +1,7 @@
 //! What may be wrong with an octree or mesh file, or with what is to go into one.
 
 use crate::BuildError;
+use ambit_file::os_text;
 use ambit_scene::ErrorClass;
 use std::io;
 
@@ -9,7 +10,7 @@ use std::io;
 #[non_exhaustive]
 pub enum Error {
     /// The operating system refused to open or read a file, or to run a command.
-    #[error("{action} \"{name}\": {}", system_words(.source))]
+    #[error("{action} \"{name}\": {}", os_text(.source))]
     Open {
         /// What was tried, as in `cannot open octree file`.
         action: &'static str,
@@ -64,7 +65,7 @@ pub enum Error {
         primitive: String,
     },
     /// The octree could not be written.
-    #[error("output error in writeoct: {}", system_words(.0))]
+    #[error("output error in writeoct: {}", os_text(.0))]
     Write(#[source] io::Error),
 }
 
@@ -166,14 +167,5 @@ impl Error {
             Self::Scene(e) => e.class(),
             _ => ErrorClass::User,
         }
-    }
-}
-
-/// The system's words for an error, without the number that the standard library appends.
-fn system_words(e: &io::Error) -> String {
-    let text = e.to_string();
-    match text.find(" (os error ") {
-        Some(end) => text[..end].to_owned(),
-        None => text,
     }
 }

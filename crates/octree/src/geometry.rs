@@ -2,7 +2,7 @@
 //! polygons and to a small table for everything else.
 
 use crate::Cube;
-use crate::overlap::{ConeFamily, PolygonTest, Relation, Volume, sphere_meets};
+use crate::overlap::{ConeFamily, Octants, PolygonTest, Relation, Volume, sphere_meets};
 use ambit_base::DVec3;
 use ambit_scene::{Bounds, Facet, ObjectId, Scene, Shape};
 
@@ -27,6 +27,18 @@ impl Entry {
     const POLYGON: Self = Self(u32::MAX - 1);
     /// A polygon whose last vertex repeats the first.
     const CLOSED_POLYGON: Self = Self(u32::MAX - 2);
+
+    /// The object as a polygon, if it is one.
+    #[inline]
+    fn polygon(self, scene: &Scene, id: ObjectId) -> Option<PolygonTest<'_>> {
+        let numbers = scene.reals(id);
+        match self {
+            Self::POLYGON => Some(PolygonTest::new(numbers)),
+            // The last vertex is the repeated one.
+            Self::CLOSED_POLYGON => Some(PolygonTest::new(&numbers[..numbers.len().saturating_sub(3)])),
+            _ => None,
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -135,22 +147,41 @@ impl Geometry {
     }
 
     /// How an object of `scene` lies in relation to a cube. Parts below `smallest` in size are not told apart.
+    pub(crate) fn relation(&self, scene: &Scene, id: ObjectId, cube: &Cube, smallest: f64) -> Relation {
+        let entry = self.entry(id);
+        if entry == Entry::NOWHERE {
+            return Relation::Miss;
+        }
+        match entry.polygon(scene, id) {
+            Some(polygon) => polygon.meets(cube).into(),
+            None => self.others[entry.0 as usize].relation(cube, smallest),
+        }
+    }
+
+    /// Which children of a cube an object is in, one bit each; for a volume, all that are to be looked at one by one.
     #[inline]
-    pub fn relation(&self, scene: &Scene, id: ObjectId, cube: &Cube, smallest: f64) -> Relation {
-        match self.entry(id) {
-            Entry::NOWHERE => Relation::Miss,
-            Entry::POLYGON => PolygonTest::new(scene.reals(id)).meets(cube.origin, cube.edge).into(),
-            Entry::CLOSED_POLYGON => {
-                let all = scene.reals(id);
-                // The last whole vertex is the repeated one.
-                let kept = (all.len() / 3).saturating_sub(1) * 3;
-                PolygonTest::new(&all[..kept]).meets(cube.origin, cube.edge).into()
-            }
-            Entry(index) => match &self.others[index as usize] {
-                Other::Sphere { centre, radius } => sphere_meets(*centre, *radius, cube.origin, cube.edge).into(),
-                Other::Cone(c) => c.meets(cube.origin, cube.edge, smallest).into(),
-                Other::Volume(v) => v.relation(cube),
-            },
+    pub(crate) fn children(&self, scene: &Scene, id: ObjectId, cube: &Cube, octants: &Octants, smallest: f64) -> u8 {
+        let entry = self.entry(id);
+        if entry == Entry::NOWHERE {
+            return 0;
+        }
+        if let Some(polygon) = entry.polygon(scene, id) {
+            return polygon.children(cube, octants);
+        }
+        let other = &self.others[entry.0 as usize];
+        if matches!(other, Other::Volume(_)) {
+            return 0xff;
+        }
+        (0..8).filter(|&c| other.relation(&cube.child(c), smallest) != Relation::Miss).fold(0, |m, c| m | 1 << c)
+    }
+}
+
+impl Other {
+    fn relation(&self, cube: &Cube, smallest: f64) -> Relation {
+        match self {
+            Self::Sphere { centre, radius } => sphere_meets(*centre, *radius, cube.origin, cube.edge).into(),
+            Self::Cone(c) => c.meets(cube.origin, cube.edge, smallest).into(),
+            Self::Volume(v) => v.relation(cube),
         }
     }
 }

@@ -15,14 +15,14 @@ mod read;
 mod tree;
 mod write;
 
-pub use build::{BuildError, Limits, build, extend};
+pub use build::{BuildError, Extended, Limits, build, extend};
 pub use cube::{Cube, MARGIN};
 pub use error::{Error, Problem};
 pub use geometry::Geometry;
 pub use mesh::{Mesh, read_mesh};
 pub use open::open;
 pub use overlap::{Relation, Volume};
-pub use prepare::{Find, prepare, prepare_present};
+pub use prepare::{Find, Prepared, prepare, prepare_present};
 pub use read::{Loaded, read_cube, read_octree, read_scene};
 pub use tree::{MOST_IN_SET, MOST_OBJECTS, Node, Tree};
 pub use write::{Objects, write};

@@ -13,6 +13,15 @@ use std::path::PathBuf;
 /// Finds a library file by its name as a scene gives it, along the search path.
 pub type Find<'a> = dyn Fn(&str) -> Option<PathBuf> + 'a;
 
+/// Objects that are about to go into a tree.
+#[derive(Debug)]
+pub struct Prepared {
+    /// What the build tests.
+    pub geometry: Geometry,
+    /// What Radiance only warns of when it builds the tree, after it has found that everything is inside the cube.
+    pub warnings: Vec<String>,
+}
+
 /// Prepares a run of objects that are about to go into a tree. Surfaces are corrected in the scene, the way frozen
 /// octrees store them, with Radiance's warnings.
 pub fn prepare(
@@ -20,11 +29,11 @@ pub fn prepare(
     objects: Range<ObjectId>,
     find: &Find<'_>,
     notify: &dyn Notify,
-) -> Result<Geometry, Error> {
+) -> Result<Prepared, Error> {
     let mut geometry = Geometry::starting_at(objects.start);
     let mut cubes = Cubes::new(find);
-    // Some warnings come with the bounding boxes, some when the tree is built, which is later; those about cones that
-    // are ignored come both times.
+    // Most warnings come with the bounding boxes; those about spheres come when the tree is built, which is later, and
+    // those about cones that are ignored come both times.
     let mut later = Vec::new();
     for id in objects {
         match scene.object(id).kind {
@@ -34,7 +43,7 @@ pub fn prepare(
             Kind::Polygon => {
                 let facet = facet(scene, id)?;
                 if let Some(complaint) = facet.complaint() {
-                    later.push(format!("{complaint} for {}", scene.describe(id)));
+                    notify.warn(&format!("{complaint} for {}", scene.describe(id)));
                 }
                 geometry.push_polygon(&facet, scene.reals(id).len());
             }
@@ -53,10 +62,7 @@ pub fn prepare(
             }
         }
     }
-    for text in &later {
-        notify.warn(text);
-    }
-    Ok(geometry)
+    Ok(Prepared { geometry, warnings: later })
 }
 
 /// Prepares a run of objects that are in a tree already: nothing is changed and nobody warned.

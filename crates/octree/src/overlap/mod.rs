@@ -9,7 +9,7 @@ mod volume;
 
 pub(crate) use boxes::AxisBox;
 pub(crate) use cone::ConeFamily;
-pub(crate) use polygon::PolygonTest;
+pub(crate) use polygon::{Octants, PolygonTest};
 pub(crate) use sphere::sphere_meets;
 pub use volume::Volume;
 

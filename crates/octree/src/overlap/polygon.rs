@@ -2,6 +2,7 @@
 //! pierces the polygon's plane.
 
 use super::AxisBox;
+use crate::Cube;
 use ambit_base::{DVec3, EPSILON};
 
 /// Lengths whose square differs from 1 by no more than this are corrected linearly when normalising.
@@ -21,18 +22,34 @@ impl<'a> PolygonTest<'a> {
     }
 
     /// True if the polygon comes within the cube.
-    #[inline]
-    pub(crate) fn meets(&self, origin: DVec3, edge: f64) -> bool {
-        let lo = origin - EPSILON;
-        let around = AxisBox { lo, hi: lo + (edge + 2.0 * EPSILON) };
+    pub(crate) fn meets(&self, cube: &Cube) -> bool {
+        let around = tolerant_box(cube);
         let points = around.classify(self.vertices.iter().map(|&v| v.into()));
-        if points.inside > 0 {
-            return true;
+        points.inside > 0 || (!points.one_sided && self.crosses(&around))
+    }
+
+    /// Which children of a cube the polygon comes within: what [`PolygonTest::meets`] says of each, found together.
+    #[inline]
+    pub(crate) fn children(&self, cube: &Cube, octants: &Octants) -> u8 {
+        let mut inside = 0;
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for &v in self.vertices {
+            let p = DVec3::from(v);
+            inside |= octants.touched(p, p);
+            low = low.min(p);
+            high = high.max(p);
         }
-        if points.one_sided {
-            return false;
+        // The vertices are on one side of all other children, or the polygon may cross them.
+        let mut open = octants.touched(low, high) & !inside;
+        let mut met = inside;
+        while open != 0 {
+            let number = open.trailing_zeros() as usize;
+            open &= open - 1;
+            if self.crosses(&tolerant_box(&cube.child(number))) {
+                met |= 1 << number;
+            }
         }
-        self.crosses(&around)
+        met
     }
 
     /// The rest of the test, for a polygon without a vertex in the box.
@@ -113,6 +130,46 @@ impl<'a> PolygonTest<'a> {
     }
 }
 
+/// The box in which a polygon counts as being in a cube: a little larger than the cube.
+#[inline]
+fn tolerant_box(cube: &Cube) -> AxisBox {
+    AxisBox::new(cube.origin - EPSILON, cube.edge + 2.0 * EPSILON)
+}
+
+/// The limits of a cube's eight children, for polygons.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Octants {
+    /// What is below is not in the lower, upper children of an axis.
+    low: [DVec3; 2],
+    /// What is above is not in the lower, upper children of an axis.
+    high: [DVec3; 2],
+}
+
+/// The children in the lower and in the upper half of each axis, one bit each.
+const HALVES: [[u8; 2]; 3] = [[0b0101_0101, 0b1010_1010], [0b0011_0011, 0b1100_1100], [0b0000_1111, 0b1111_0000]];
+
+impl Octants {
+    /// The children of a cube.
+    pub(crate) fn new(cube: &Cube) -> Self {
+        let boxes = [0, 7].map(|number| tolerant_box(&cube.child(number)));
+        Self { low: boxes.map(|b| b.lo - EPSILON), high: boxes.map(|b| b.hi + EPSILON) }
+    }
+
+    /// The children that a box is not beside of.
+    #[inline]
+    fn touched(&self, low: DVec3, high: DVec3) -> u8 {
+        let mut mask = 0xff;
+        for (axis, halves) in HALVES.iter().enumerate() {
+            let along = |half: usize| {
+                let beside = high[axis] < self.low[half][axis] || low[axis] > self.high[half][axis];
+                if beside { 0 } else { halves[half] }
+            };
+            mask &= along(0) | along(1);
+        }
+        mask
+    }
+}
+
 /// The vector made unit length the way Radiance does, to the last bit; none for the zero vector.
 pub(super) fn normalised(v: DVec3) -> Option<DVec3> {
     let square = v.dot(v);
@@ -145,7 +202,7 @@ mod tests {
             ([4.5, 4.5, -0.5], 1.0, false),
             ([-1.0, -1.0, -1.0], 8.0, true),
         ] {
-            assert_eq!(p.meets(origin.into(), edge), meets, "{origin:?}");
+            assert_eq!(p.meets(&Cube { origin: origin.into(), edge }), meets, "{origin:?}");
         }
     }
 
@@ -168,15 +225,33 @@ mod tests {
             frame.extend([x, y, 1.0]);
         }
         let p = PolygonTest::new(&frame);
-        assert!(!p.meets(DVec3::new(3.5, 3.5, 0.5), 1.0));
-        assert!(p.meets(DVec3::new(6.5, 3.5, 0.5), 1.0));
+        assert!(!p.meets(&Cube { origin: DVec3::new(3.5, 3.5, 0.5), edge: 1.0 }));
+        assert!(p.meets(&Cube { origin: DVec3::new(6.5, 3.5, 0.5), edge: 1.0 }));
     }
 
     #[test]
     fn fewer_than_three_vertices_are_nowhere() {
         for n in 0..3 {
             let p = PolygonTest::new(&SQUARE[..3 * n]);
-            assert!(!p.meets(DVec3::new(7.5, 7.5, 7.5), 1.0));
+            assert!(!p.meets(&Cube { origin: DVec3::splat(7.5), edge: 1.0 }));
+        }
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn children_together_are_children_one_by_one(
+            numbers in proptest::collection::vec(-1.5f64..1.5, 9..19),
+            snapped in proptest::bool::ANY,
+        ) {
+            // On a coarse grid vertices and edges lie in the faces of the cubes.
+            let snap = |x: &f64| if snapped { (x * 4.0).round() / 4.0 } else { *x };
+            let numbers: Vec<f64> = numbers.iter().map(snap).collect();
+            let p = PolygonTest::new(&numbers);
+            let cube = Cube { origin: DVec3::splat(-1.0), edge: 2.0 };
+            let together = p.children(&cube, &Octants::new(&cube));
+            for number in 0..8 {
+                proptest::prop_assert_eq!(together >> number & 1 != 0, p.meets(&cube.child(number)));
+            }
         }
     }
 }
