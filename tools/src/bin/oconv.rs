@@ -1,12 +1,11 @@
 //! oconv: scene files to an octree on standard output.
 
-use ambit_base::{DVec3, Location, Notify, Stderr};
-use ambit_file::{Header, command_line};
-use ambit_octree::{Cube, Error, Find, Geometry, Limits, Objects, Tree};
+use ambit_base::{DVec3, Location, Notify};
+use ambit_cli::{Class, ConsoleMessages, Failure, VERSION};
+use ambit_file::{Header, Library, SearchPath, command_line};
+use ambit_octree::{Cube, Error, Find, Limits, Objects, Prepared, Tree};
 use ambit_scene::{ErrorClass, Reader, Scene, Shell};
-use std::fmt::Display;
-use std::io::{BufWriter, stdout};
-use std::path::{Path, PathBuf};
+use std::io::{BufWriter, Write, stdout};
 use std::process::ExitCode;
 
 const HELP: &str = "\
@@ -38,45 +37,46 @@ fn main() -> ExitCode {
     let mut words = std::env::args_os().map(|w| w.to_string_lossy().into_owned());
     let program = words.next().unwrap_or_default();
     let arguments: Vec<String> = words.collect();
-    let program = program.rsplit('/').next().unwrap_or_default().to_owned();
-    match run(&program, &arguments) {
+    let program = program.rsplit('/').next().unwrap_or_default();
+    match run(program, &arguments) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            let (word, status) = match failure.class {
-                ErrorClass::User => ("fatal", 1),
-                ErrorClass::System => ("system", 2),
-                ErrorClass::Internal => ("internal", 3),
-            };
-            eprintln!("{program}: {word} - {}", failure.text);
-            if let Some(place) = failure.place.filter(|p| p.line > 0) {
-                eprintln!("{program}: at {place}");
+        Err(stop) => {
+            let messages = ConsoleMessages { program: program.to_owned(), warnings: true };
+            messages.fail(&stop.failure);
+            if let Some(place) = stop.place.filter(|p| p.line > 0) {
+                messages.print(format_args!("at {place}"));
             }
-            ExitCode::from(status)
+            ExitCode::from(stop.failure.class.status())
         }
     }
 }
 
 /// Why the program ends early.
-struct Failure {
-    class: ErrorClass,
-    text: String,
+struct Stop {
+    failure: Failure,
+    /// Where in the scene files the reason is.
     place: Option<Location>,
 }
 
-impl Failure {
-    fn fatal(text: impl Display) -> Self {
-        Self { class: ErrorClass::User, text: text.to_string(), place: None }
+impl From<Failure> for Stop {
+    fn from(failure: Failure) -> Self {
+        Self { failure, place: None }
     }
 }
 
-impl From<Error> for Failure {
+impl From<Error> for Stop {
     fn from(e: Error) -> Self {
         let place = if let Error::Scene(e) = &e { Some(e.location().clone()) } else { None };
-        Self { class: e.class(), text: e.to_string(), place }
+        let class = match e.class() {
+            ErrorClass::User => Class::User,
+            ErrorClass::System => Class::System,
+            ErrorClass::Internal => Class::Internal,
+        };
+        Self { failure: Failure { class, text: e.to_string() }, place }
     }
 }
 
-impl From<ambit_scene::Error> for Failure {
+impl From<ambit_scene::Error> for Stop {
     fn from(e: ambit_scene::Error) -> Self {
         Error::from(e).into()
     }
@@ -108,22 +108,22 @@ fn parse(arguments: &[String]) -> Result<Asked, Failure> {
             break;
         }
         words.next();
-        let mut value = || words.next().ok_or_else(|| Failure::fatal(format!("missing value for option '{word}'")));
+        let mut value = || words.next().ok_or_else(|| Failure::user(format!("missing value for option '{word}'")));
         match word.as_str() {
             "--help" => return Ok(Asked::Text(HELP.to_owned())),
-            "--version" => return Ok(Asked::Text(format!("oconv (Ambit) {}\n", env!("CARGO_PKG_VERSION")))),
+            "--version" => return Ok(Asked::Text(format!("{VERSION}\n"))),
             _ => {}
         }
         match letters.next() {
             Some(b'i') => {
                 if request.cube.is_some() {
-                    return Err(Failure::fatal("only one of '-b' or '-i'"));
+                    return Err(Failure::user("only one of '-b' or '-i'"));
                 }
                 request.input = Some(value()?.clone());
             }
             Some(b'b') => {
                 if request.input.is_some() {
-                    return Err(Failure::fatal("only one of '-b' or '-i'"));
+                    return Err(Failure::user("only one of '-b' or '-i'"));
                 }
                 let mut next = || number(word, value()?);
                 let corner = DVec3::new(next()?, next()?, next()?);
@@ -133,7 +133,7 @@ fn parse(arguments: &[String]) -> Result<Asked, Failure> {
             Some(b'r') => request.limits.resolution = number(word, value()?)? as i64,
             Some(b'f') => request.frozen = true,
             Some(b'w') => request.quiet = true,
-            _ => return Err(Failure::fatal(format!("unknown option: '{word}'"))),
+            _ => return Err(Failure::user(format!("unknown option: '{word}'"))),
         }
     }
     request.files = words.cloned().collect();
@@ -141,22 +141,23 @@ fn parse(arguments: &[String]) -> Result<Asked, Failure> {
 }
 
 fn number(option: &str, word: &str) -> Result<f64, Failure> {
-    let bad = || Failure::fatal(format!("bad value '{word}' for option '{option}': expected a number"));
+    let bad = || Failure::user(format!("bad value '{word}' for option '{option}': expected a number"));
     word.parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(bad)
 }
 
-fn run(program: &str, arguments: &[String]) -> Result<(), Failure> {
+fn run(program: &str, arguments: &[String]) -> Result<(), Stop> {
     let request = match parse(arguments)? {
         Asked::Octree(request) => request,
         Asked::Text(text) => {
-            print!("{text}");
+            // Nobody reading the help is no failure.
+            let _ = stdout().write_all(text.as_bytes());
             return Ok(());
         }
     };
-    let notify = Stderr { program: program.to_owned(), warnings: !request.quiet };
-    let search = std::env::var("RAYPATH").ok();
-    let home = std::env::var("HOME").ok();
-    let find = |name: &str| find_library_file(name, search.as_deref(), home.as_deref());
+    let notify = ConsoleMessages { program: program.to_owned(), warnings: !request.quiet };
+    let variable = |name| std::env::var(name).ok();
+    let search = SearchPath::new(variable("RAYPATH").as_deref(), variable("HOME").as_deref(), Library::NONE);
+    let find = |name: &str| search.find_path(name);
     let mut header = Header::empty();
     let octree = convert(&request, &mut header, &find, &notify)?;
     header.push(command_line(program.as_bytes(), arguments));
@@ -179,7 +180,7 @@ struct Octree {
     tree: Tree,
 }
 
-fn convert(request: &Request, header: &mut Header, find: &Find<'_>, notify: &dyn Notify) -> Result<Octree, Failure> {
+fn convert(request: &Request, header: &mut Header, find: &Find<'_>, notify: &dyn Notify) -> Result<Octree, Stop> {
     let mut scene = Scene::new();
     let mut names = Vec::new();
     let mut frozen = request.frozen;
@@ -207,58 +208,46 @@ fn convert(request: &Request, header: &mut Header, find: &Find<'_>, notify: &dyn
             continue;
         }
         if names.len() >= MOST_FILES && !frozen {
-            return Err(Failure { class: ErrorClass::Internal, text: "too many scene files".to_owned(), place: None });
+            return Err(Failure::internal("too many scene files").into());
         }
         names.push(name.clone());
         reader.read(name)?;
     }
     let objects = first..scene.ids().end;
-    let geometry = ambit_octree::prepare(&mut scene, objects, find, notify)?;
-    let (cube, tree) = plant(request, &scene, &geometry, start, find)?;
+    let prepared = ambit_octree::prepare(&mut scene, objects, find, notify)?;
+    let (cube, tree) = plant(request, &mut scene, &prepared, start, find, notify)?;
     Ok(Octree { scene, names, frozen, cube, tree })
 }
 
 /// The cube and its tree.
 fn plant(
     request: &Request,
-    scene: &Scene,
-    geometry: &Geometry,
+    scene: &mut Scene,
+    prepared: &Prepared,
     start: Option<(Cube, Tree)>,
     find: &Find<'_>,
+    notify: &dyn Notify,
 ) -> Result<(Cube, Tree), Error> {
-    let cube = match (start.as_ref().map(|s| s.0), request.cube) {
-        (Some(cube), _) | (None, Some(cube)) => {
-            if geometry.bounds().is_some_and(|b| !cube.encloses(&b)) {
-                return Err(Error::Outside);
-            }
-            cube
-        }
-        (None, None) => Cube::around(geometry.bounds()),
-    };
-    let tree = match start {
-        Some((_, tree)) => {
-            let present = ambit_octree::prepare_present(scene, 0..geometry.first(), find)?;
-            ambit_octree::extend(scene, geometry, cube, request.limits, &tree, &present)?
-        }
-        None => ambit_octree::build(scene, geometry, cube, request.limits)?,
-    };
-    Ok((cube, tree))
-}
-
-/// A library file by its name: absolute, relative to the working directory (leading `.`), to a home directory (leading
-/// `~`), or in the first folder of the search path that has it.
-fn find_library_file(name: &str, search: Option<&str>, home: Option<&str>) -> Option<PathBuf> {
-    let readable = |path: PathBuf| std::fs::File::open(&path).is_ok().then_some(path);
-    if name.starts_with(['/', '.']) {
-        return readable(PathBuf::from(name));
+    let geometry = &prepared.geometry;
+    // The cube of an octree without surfaces has no size and fits nothing.
+    let given = start.as_ref().map(|s| s.0).filter(|c| c.edge > 0.0).or(request.cube);
+    if given.is_some_and(|cube| geometry.bounds().is_some_and(|b| !cube.encloses(&b))) {
+        return Err(Error::Outside);
     }
-    if let Some(rest) = name.strip_prefix("~/") {
-        return readable(Path::new(home?).join(rest));
+    for text in &prepared.warnings {
+        notify.warn(text);
     }
-    let search = search.unwrap_or(":");
-    let folders = search.strip_suffix(':').unwrap_or(search);
-    folders.split(':').find_map(|folder| {
-        let path = if folder.is_empty() { PathBuf::from(name) } else { PathBuf::from(format!("{folder}/{name}")) };
-        readable(path)
-    })
+    let cube = given.unwrap_or_else(|| Cube::around(geometry.bounds()));
+    let Some((_, tree)) = start else {
+        return Ok((cube, ambit_octree::build(scene, geometry, cube, request.limits)?));
+    };
+    let present = ambit_octree::prepare_present(scene, 0..geometry.first(), find)?;
+    let extended = ambit_octree::extend(scene, geometry, cube, request.limits, &tree, &present)?;
+    // Objects that were tested are frozen as put right, the others as they were.
+    for id in extended.moved {
+        for warning in scene.clean(id)? {
+            notify.warn(&warning.text);
+        }
+    }
+    Ok((cube, extended.tree))
 }
