@@ -68,17 +68,14 @@ fn run(words: &[OsString]) -> Result<(), Failure> {
         }
     }
     let mut bytes = Vec::new();
-    let name = match file {
-        Some(path) => {
-            let name = path.to_string_lossy().into_owned();
-            let mut file = File::open(path).map_err(|_| Failure::Missing(name.clone()))?;
-            file.read_to_end(&mut bytes).map_err(Failure::Input)?;
-            name
-        }
-        None => {
-            io::stdin().lock().read_to_end(&mut bytes).map_err(Failure::Input)?;
-            "standard input".to_owned()
-        }
+    let name = if let Some(path) = file {
+        let name = path.to_string_lossy().into_owned();
+        let mut file = File::open(path).map_err(|_| Failure::Missing(name.clone()))?;
+        file.read_to_end(&mut bytes).map_err(Failure::Input)?;
+        name
+    } else {
+        io::stdin().lock().read_to_end(&mut bytes).map_err(Failure::Input)?;
+        "standard input".to_owned()
     };
     let mut out = BufWriter::new(io::stdout().lock());
     if options.reverse {
