@@ -3,6 +3,7 @@
 use crate::session::{Session, Stop};
 use ambit_cli::{Class, Failure, Function, Rendering};
 use ambit_file::{Header, general};
+use ambit_render::picture::SourceOutline;
 use ambit_render::{Answer, Definition, Environment, OctreeSource, Renderer, Request, load};
 use ambit_scene::{ErrorClass, ObjectId};
 use std::borrow::Cow;
@@ -58,6 +59,11 @@ impl<'a> Scene<'a> {
         }
         session.begin_work();
         Ok(Self { session, renderer, header })
+    }
+
+    /// Outlines of the light sources.
+    pub(crate) fn outlines(&self) -> Vec<SourceOutline> {
+        self.renderer.source_outlines()
     }
 
     /// Closes the ambient file; call it whatever happened.

@@ -4,8 +4,9 @@
 //! resolved in rounds, and everything learnt becomes visible to the next batch. The answers depend on the requests and
 //! the borders of batches, never on threads.
 
+use crate::picture::{SourceOutline, outlines};
 use crate::prepare::{Environment, Loaded, Prepared};
-use crate::ray::{Interior, Ray};
+use crate::ray::{Interior, Kinds, Ray};
 use crate::request::{Aim, Answer, Request};
 use crate::sharing::Sharing;
 use crate::sources::{Tally, sensor};
@@ -132,6 +133,11 @@ impl Renderer {
         &mut self.cache
     }
 
+    /// Outlines of the light sources that pictures may have to draw ([`Aim::Source`] asks for their light).
+    pub fn source_outlines(&self) -> Vec<SourceOutline> {
+        outlines(&self.scene.sources)
+    }
+
     /// Identifier of an object; `*` for [`VOID`] as a surface is the caller's affair.
     pub fn name(&self, id: ObjectId) -> Cow<'_, str> {
         if id == VOID { Cow::Borrowed("void") } else { self.scene.objects.name(id) }
@@ -165,7 +171,9 @@ impl Walk<'_> {
                 let start = request.origin + direction * SENSOR_LIFT;
                 Ray::primary(start, -direction, FAR, interior, stream)
             }
-            Aim::Radiance | Aim::Geometry => Ray::primary(request.origin, direction, request.limit, interior, stream),
+            Aim::Radiance | Aim::Geometry | Aim::Source(_) => {
+                Ray::primary(request.origin, direction, request.limit, interior, stream)
+            }
         };
         match request.aim {
             Aim::Irradiance => {
@@ -178,6 +186,13 @@ impl Walk<'_> {
             }
             Aim::Radiance => self.evaluate(&mut ray),
             Aim::Geometry => self.locate(&mut ray),
+            Aim::Source(id) => {
+                ray.kind = Kinds::SHADOW_REFLECTED;
+                ray.lineage = Kinds::SHADOW_REFLECTED;
+                let mut ray_to_source = ray.aimed(id);
+                self.evaluate(&mut ray_to_source);
+                ray = ray_to_source;
+            }
         }
         let mut answer = Answer::nothing(ray.origin, ray.direction);
         answer.value = ray.value;

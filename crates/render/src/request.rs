@@ -27,6 +27,8 @@ pub enum Aim {
     Irradiance,
     /// Geometry only: nothing is shaded.
     Geometry,
+    /// What a shadow ray brings that is aimed at one light source, by its number.
+    Source(u32),
 }
 
 /// What is known of a primary ray after tracing.

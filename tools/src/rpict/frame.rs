@@ -10,8 +10,8 @@ use crate::session::{Session, Stop};
 use ambit_base::{Notify, Rgb};
 use ambit_cli::{Failure, PictureOptions};
 use ambit_file::{PixelSpace, Projection, View, fit_resolution};
-use ambit_render::Request;
-use ambit_render::picture::{Band, Camera, Lens, Order, Pixel, PixelRequest, Sampler};
+use ambit_render::picture::{Band, Camera, Lens, Order, Pixel, PixelRequest, Sampler, SmallSources};
+use ambit_render::{Answer, Request};
 
 /// What is common to all pictures of a run.
 pub(crate) struct Picture<'a> {
@@ -97,6 +97,7 @@ impl Picture<'_> {
     /// Makes a picture.
     pub(crate) fn make(&self, frame: &Frame, scene: &mut Scene<'_>) -> Result<(), Stop> {
         let options = self.options;
+        self.session.meter.set_percent(0.0);
         let (width, height) = (frame.width, frame.height);
         let done = frame.recovered.as_ref().map_or(0, |r| r.lines.len() as u32);
         let mut output = PictureOutput::open(frame.output.as_deref(), frame.distances.as_deref(), done, width)?;
@@ -135,7 +136,8 @@ impl Picture<'_> {
         watch: &mut Watch<'_>,
     ) -> Result<(), Stop> {
         let options = self.options;
-        let ambient = &options.rendering.options.ambient;
+        let rendering = &options.rendering.options;
+        let ambient = &rendering.ambient;
         let cached = ambient.bounces > 0 && ambient.accuracy > 0.0;
         let sampler = Sampler {
             width: frame.width,
@@ -152,23 +154,33 @@ impl Picture<'_> {
             width: frame.width,
             height: frame.height,
             lens: Lens { jitter: options.jitter, aperture: options.aperture, motion: options.motion },
-            seed: options.rendering.options.seed,
+            seed: rendering.seed,
         };
+        // Blurred pictures show small sources blurred.
+        let blurred = options.aperture > 0.0 || frame.previous.is_some();
+        let outlines = if rendering.direct.visible && !blurred { scene.outlines() } else { Vec::new() };
+        let small =
+            SmallSources::new(&outlines, frame.view, (frame.width, frame.height), sampler.spacing, sampler.distances);
         let (first, share) = sampler.first_pass();
         let start = 100.0 * (1.0 - f64::from(rows) / f64::from(frame.height));
         let part = |fraction: f64| start + (100.0 - start) * fraction;
         let watch = std::cell::RefCell::new(watch);
+        let scene = std::cell::RefCell::new(scene);
         let mut traced = 0;
         sampler.run(
             &mut |pixels| {
-                let answers = self.trace(&camera, pixels, scene)?;
+                let answers = self.trace(&camera, pixels, &mut **scene.borrow_mut())?;
                 traced += pixels.len();
                 if traced <= first {
                     watch.borrow_mut().step(part(share * traced as f64 / first as f64));
                 }
                 Ok(answers)
             },
-            &mut |band: Band| {
+            &mut |mut band: Band| {
+                small.draw(&mut band, &mut |requests| -> Result<_, Stop> {
+                    let answers = scene.borrow_mut().trace(requests)?;
+                    Ok(answers.iter().map(|a| self.pixel(a)).collect())
+                })?;
                 let left = f64::from(band.top + 1) - band.rows.len() as f64;
                 let (colours, lengths): (Vec<Vec<Rgb>>, Vec<Vec<f32>>) =
                     band.rows.iter().map(|row| row.iter().map(|p| (p.colour, p.distance)).unzip()).unzip();
@@ -188,11 +200,12 @@ impl Picture<'_> {
         let mut answers = light.trace(&requests)?.into_iter();
         let pixel = |ray: &Option<Request>| {
             let answer = ray.as_ref().and_then(|_| answers.next());
-            answer.map_or_else(Pixel::default, |a| Pixel {
-                colour: self.conversion.apply(a.value),
-                distance: a.length as f32,
-            })
+            answer.map_or_else(Pixel::default, |a| self.pixel(&a))
         };
         Ok(rays.iter().map(pixel).collect())
+    }
+
+    fn pixel(&self, answer: &Answer) -> Pixel {
+        Pixel { colour: self.conversion.apply(answer.value), distance: answer.length as f32 }
     }
 }

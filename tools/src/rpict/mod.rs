@@ -34,7 +34,11 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let (program, words) = split(arguments);
     let mut session = Session::new(program, true);
     let result = run(&mut session, words);
-    let failed = result.is_err();
+    // Radiance reports after every message, and has none where it ends without a word.
+    let failed = match &result {
+        Err(Stop::Failure(failure)) => !failure.text.is_empty(),
+        other => other.is_err(),
+    };
     let status = session.end(result);
     if failed {
         session.meter.report();

@@ -108,19 +108,20 @@ fn numbered(pattern: &str, number: i32) -> String {
     while let Some(at) = rest.find('%') {
         let (before, after) = rest.split_at(at);
         out.push_str(before);
-        let digits = after[1..].find(|c: char| !c.is_ascii_digit()).map_or(after.len(), |n| n + 1);
-        let width = &after[1..digits];
+        let letter = after[1..].find(|c: char| !c.is_ascii_digit()).map_or(after.len(), |n| n + 1);
+        let width = &after[1..letter];
         let count = width.trim_start_matches('0').parse().unwrap_or(0usize).min(64);
-        let end = match after.as_bytes().get(digits) {
+        let end = match after.as_bytes().get(letter) {
             Some(b'%') if width.is_empty() => {
                 out.push('%');
-                digits + 1
+                letter + 1
             }
             Some(b'd' | b'i') if !used => {
                 used = true;
                 let zeros = width.starts_with('0');
-                out += &if zeros { format!("{number:0count$}") } else { format!("{number:count$}") };
-                digits + 1
+                let digits = if zeros { format!("{number:0count$}") } else { format!("{number:count$}") };
+                out.push_str(&digits);
+                letter + 1
             }
             _ => {
                 out.push('%');

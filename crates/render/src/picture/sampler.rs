@@ -90,11 +90,7 @@ impl Sampler {
     ///
     /// # Errors
     /// Those of `trace` and `emit`.
-    pub fn run<E>(
-        &self,
-        trace: &mut Trace<'_, E>,
-        emit: &mut dyn FnMut(Band) -> Result<(), E>,
-    ) -> Result<(), E> {
+    pub fn run<E>(&self, trace: &mut Trace<'_, E>, emit: &mut dyn FnMut(Band) -> Result<(), E>) -> Result<(), E> {
         if self.width == 0 || self.rows == 0 {
             return Ok(());
         }
