@@ -86,7 +86,7 @@ impl Sieve {
 }
 
 impl Probe {
-    #[inline(always)]
+    #[inline]
     fn mask(&self, c: [&[f32; LANES]; 6], reach2: &[f32; LANES]) -> u32 {
         let mut far = [0.0f32; LANES];
         let mut cosine = [0.0f32; LANES];
@@ -97,7 +97,9 @@ impl Probe {
         }
         let mut mask = 0;
         for i in 0..LANES {
-            mask |= u32::from((far[i] < reach2[i]) & (cosine[i] >= self.cosine)) << i;
+            let near = u32::from(far[i] < reach2[i]);
+            let facing = u32::from(cosine[i] >= self.cosine);
+            mask |= (near & facing) << i;
         }
         mask
     }

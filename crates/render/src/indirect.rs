@@ -36,7 +36,7 @@ impl Walk<'_> {
         match self.cache.ask(self.tracer, &query) {
             Answer::Value(v) | Answer::Fallback(v) => ray.value += coefficient * v,
             Answer::Miss => {
-                let k = ray.throughput * self.attenuation(ray) * coefficient;
+                let k = ray.throughput * ray.attenuation() * coefficient;
                 self.misses.push(Miss { coefficient: k, query });
             }
             Answer::Uncached => self.hemisphere(ray, coefficient, normal, shading, transmitted),

@@ -269,6 +269,17 @@ impl<'p> Ray<'p> {
         self.hit.as_ref().map_or(1.0, |h| h.cosine)
     }
 
+    /// Transmittance of the medium on this ray's own segment.
+    pub(crate) fn attenuation(&self) -> Rgb {
+        if self.interior.extinction == Rgb::ZERO {
+            Rgb::ONE
+        } else if self.is_shadow() {
+            transmittance(self.interior.extinction * (Rgb::ONE - self.interior.albedo), self.distance)
+        } else {
+            transmittance(self.interior.extinction, self.distance)
+        }
+    }
+
     /// The geometric normal turned to the viewer.
     pub(crate) fn facing_normal(&self) -> DVec3 {
         self.hit.as_ref().map_or(-self.direction, |h| if h.cosine < 0.0 { -h.normal } else { h.normal })

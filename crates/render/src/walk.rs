@@ -52,7 +52,7 @@ impl Walk<'_> {
     pub(crate) fn pass_through(&mut self, ray: &mut Ray<'_>) {
         let (mut child, _) = ray.spawn(Kinds::TRANSFERRED, ray.direction, None, &self.tracer.options.limits, PASS);
         // The extinction on this segment is applied once, by `medium`.
-        child.throughput *= self.attenuation(ray);
+        child.throughput *= ray.attenuation();
         self.evaluate(&mut child);
         let (value, mirrored) = (child.value, child.mirrored);
         let (r, x) = (child.mirrored_length, child.unmirrored_length);
@@ -62,24 +62,13 @@ impl Walk<'_> {
         ray.unmirrored_length = ray.distance + x;
     }
 
-    /// Transmittance of the medium on this ray's own segment.
-    pub(crate) fn attenuation(&self, ray: &Ray<'_>) -> Rgb {
-        if ray.interior.extinction == Rgb::ZERO {
-            Rgb::ONE
-        } else if ray.is_shadow() {
-            transmittance(ray.interior.extinction * (Rgb::ONE - ray.interior.albedo), ray.distance)
-        } else {
-            transmittance(ray.interior.extinction, ray.distance)
-        }
-    }
-
     /// Applies the medium between a ray's origin and its hit.
     fn medium(&mut self, ray: &mut Ray<'_>) {
         let interior = ray.interior;
         if interior.extinction == Rgb::ZERO {
             return;
         }
-        let t = self.attenuation(ray);
+        let t = ray.attenuation();
         ray.value *= t;
         ray.mirrored *= t;
         if !ray.is_shadow() && interior.albedo.max_element() > EPSILON as f32 {
@@ -96,12 +85,9 @@ impl Walk<'_> {
         direction: ambit_base::DVec3,
         coefficient: Rgb,
         tag: u64,
-    ) -> Option<Ray<'p>>
-    where
-        Self: 'p,
-    {
+    ) -> Option<Ray<'p>> {
         let (mut child, alive) = ray.spawn(kind, direction, Some(coefficient), &self.tracer.options.limits, tag);
-        child.throughput *= self.attenuation(ray);
+        child.throughput *= ray.attenuation();
         alive.then_some(child)
     }
 

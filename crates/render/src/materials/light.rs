@@ -63,10 +63,8 @@ impl Walk<'_> {
             };
             return self.shade_as(ray, id);
         }
-        if !self.tracer.options.direct.visible
-            && !ray.is_shadow()
-            && !(m.kind == Kind::Glow && ray.travelled + ray.distance > m.radius && m.radius >= 0.0)
-        {
+        let far_glow = m.kind == Kind::Glow && m.radius >= 0.0 && ray.travelled + ray.distance > m.radius;
+        if !self.tracer.options.direct.visible && !ray.is_shadow() && !far_glow {
             return true;
         }
         if !front {

@@ -106,11 +106,7 @@ impl SmallSources {
     ///
     /// # Errors
     /// Those of `trace`.
-    pub fn draw<E>(
-        &self,
-        band: &mut Band,
-        trace: &mut Aimed<'_, E>,
-    ) -> Result<(), E> {
+    pub fn draw<E>(&self, band: &mut Band, trace: &mut Aimed<'_, E>) -> Result<(), E> {
         let (mut covers, mut requests) = (Vec::new(), Vec::new());
         for (source, polygon) in &self.sources {
             self.cover(*source, polygon, band, &mut covers, &mut requests);

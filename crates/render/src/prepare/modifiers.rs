@@ -92,12 +92,11 @@ impl Modifiers {
     fn alias(&mut self, scene: &Scene, id: ObjectId) -> Link {
         let next = scene.object(id).modifier;
         let target = scene.string_bytes(id, 0).and_then(|name| scene.modifier_before(name, id));
-        match target {
-            Some(t) => Link { next, ..self.links[t as usize] },
-            None => {
-                self.nodes.push(Node::Transparent);
-                Link { node: self.nodes.len() as u32 - 1, definition: id, next }
-            }
+        if let Some(t) = target {
+            Link { next, ..self.links[t as usize] }
+        } else {
+            self.nodes.push(Node::Transparent);
+            Link { node: self.nodes.len() as u32 - 1, definition: id, next }
         }
     }
 
@@ -110,12 +109,11 @@ impl Modifiers {
                 (m.opacity(), m.blocks())
             }
             Node::Mixture(m) if m.sides.iter().any(|&side| self.has_material(side)) => (Opacity::Opaque, false),
-            Node::Mixture(_) => self.inherited(link.next),
             Node::Unusable(_) => match scene.object(link.definition).kind.class() {
                 Class::Material | Class::Mixture => (Opacity::Opaque, false),
                 _ => self.inherited(link.next),
             },
-            Node::Pattern(_) | Node::Texture(_) | Node::Transparent => self.inherited(link.next),
+            Node::Mixture(_) | Node::Pattern(_) | Node::Texture(_) | Node::Transparent => self.inherited(link.next),
         };
         self.opacity[id as usize] = opacity;
         self.has_material[id as usize] = opacity != Opacity::Nothing;
@@ -155,8 +153,7 @@ impl Modifiers {
             let (node, definition, next) = self.get(id);
             match node {
                 Node::Material(m) => return Some((m, definition)),
-                Node::Mixture(_) => return None,
-                Node::Unusable(_) => return None,
+                Node::Mixture(_) | Node::Unusable(_) => return None,
                 _ => id = next,
             }
         }

@@ -56,29 +56,22 @@ fn build_range(
                 let over = (object.modifier != VOID).then_some(rank);
                 match contents {
                     Contents::Octree(inner) => {
-                        let world = match shared.octrees.get(&inner.start) {
-                            Some(world) => world.clone(),
-                            None => {
-                                let world = build_range(scene, inner.clone(), volumes, modifiers, environment, shared)?;
-                                let world = Arc::new(world);
-                                shared.octrees.insert(inner.start, world.clone());
-                                world
-                            }
+                        let world = if let Some(world) = shared.octrees.get(&inner.start) {
+                            world.clone()
+                        } else {
+                            let world = build_range(scene, inner.clone(), volumes, modifiers, environment, shared)?;
+                            shared.octrees.entry(inner.start).or_insert(Arc::new(world)).clone()
                         };
                         builder.add_instance(id, *placement, world, over);
                     }
                     Contents::Mesh(mesh) => {
                         let key = Arc::as_ptr(mesh);
-                        let traced = match shared.meshes.get(&key) {
-                            Some(traced) => traced.clone(),
-                            None => {
-                                let geometry = geometry(mesh, modifiers);
-                                let traced =
-                                    ambit_trace::Mesh::build(geometry).map_err(|e| Error::user(e.to_string()))?;
-                                let traced = Arc::new(traced);
-                                shared.meshes.insert(key, traced.clone());
-                                traced
-                            }
+                        let traced = if let Some(traced) = shared.meshes.get(&key) {
+                            traced.clone()
+                        } else {
+                            let traced = ambit_trace::Mesh::build(geometry(mesh, modifiers))
+                                .map_err(|e| Error::user(e.to_string()))?;
+                            shared.meshes.entry(key).or_insert(Arc::new(traced)).clone()
                         };
                         builder.add_mesh(id, *placement, traced, over);
                     }

@@ -50,7 +50,7 @@ impl Walk<'_> {
             f64::INFINITY
         };
         for (id, source) in scene.sources.iter().enumerate() {
-            if !source.sampled || self.out_of_reach(source, ray.point) {
+            if !source.sampled || source.is_out_of_reach(ray.point) {
                 continue;
             }
             parts(source, ray.point, ratio, &mut divided);
@@ -79,10 +79,6 @@ impl Walk<'_> {
         self.work.parts = divided;
         self.test_shadows(ray, &mut candidates);
         self.work.candidates = candidates;
-    }
-
-    fn out_of_reach(&self, source: &Source, point: DVec3) -> bool {
-        source.reach < FAR && point.distance(source.centre) > source.reach + source.radius
     }
 
     /// One sample of a part, or None where the source does not face, reach or aim at the point.

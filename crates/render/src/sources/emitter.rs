@@ -36,6 +36,7 @@ pub(crate) struct Spot {
 
 /// A light source.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "independent properties, each asked alone")]
 pub(crate) struct Source {
     pub(crate) object: ObjectId,
     /// Immediate modifier of the object.
@@ -132,6 +133,11 @@ impl Source {
             Shape::Degenerate => Err("illegal source"),
             _ => Err("illegal material"),
         }
+    }
+
+    /// True for points that a glow is too far from to light directly.
+    pub(crate) fn is_out_of_reach(&self, point: DVec3) -> bool {
+        self.reach < FAR && point.distance(self.centre) > self.reach + self.radius
     }
 
     /// The sample point for coordinates in [−1,1]³ along the axes; a direction for distant sources. `bend` maps the
