@@ -164,7 +164,7 @@ impl Case {
 /// A program ended badly: either it names what it does not support, or it simply fails.
 fn failed(program: &str, answer: &Answer) -> Verdict {
     let message = answer.err.trim();
-    if answer.status.is_some() && message.contains("not supported") {
+    if answer.status.is_some() && (message.contains("not supported") || message.contains("unsupported")) {
         Verdict::Refused(message.to_owned())
     } else {
         Verdict::Fails(format!("{program} ended with {:?}: {message}", answer.status))
