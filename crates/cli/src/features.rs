@@ -18,7 +18,6 @@ pub const COMMON_FEATURES: &[&str] = &[
     "MaterialMixtures",
     "Antimatter",
     "BackFaceVisibility",
-    "ScatteringModels=WGMD,Ashikhmin-Shirley",
     "Instancing=Octree,TriangleMesh",
     "Aliases",
 ];
@@ -26,7 +25,6 @@ pub const COMMON_FEATURES: &[&str] = &[
 /// What `rpict` can do besides.
 pub const PICTURE_FEATURES: &[&str] = &[
     "Multiprocessing",
-    "ParticipatingMedia=Mist",
     "Recovery",
     "IrradianceCalc",
     "ViewTypes=v,l,a,h,s,c",
@@ -51,7 +49,6 @@ pub const RAY_FEATURES: &[&str] = &[
     "IrradianceCalc",
     "ImmediateIrradiance",
     "DistanceLimiting",
-    "ParticipatingMedia=Mist",
     "HessianAmbientCache",
     "AmbientAveraging",
     "AmbientValueSharing",

@@ -83,7 +83,8 @@ fn heading(flag: &str) -> &'static str {
 
 /// The text of `--help`.
 pub fn long_help<S>(about: &About, table: &[Row<S>]) -> String {
-    single_dashes(&command(about, table).render_help().to_string(), "--", "-", table)
+    // A blank in place of the dash keeps the columns.
+    single_dashes(&command(about, table).render_help().to_string(), "--", " -", table)
 }
 
 /// The man page, in roff.
@@ -101,7 +102,12 @@ pub fn completions<S>(about: &About, table: &[Row<S>], shell: &str) -> Option<Ve
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut command(about, table), about.name, &mut script);
     let text = String::from_utf8_lossy(&script).into_owned();
-    let text = if shell == clap_complete::Shell::Fish { text.replace(" -l ", " -o ") } else { text };
+    // Values follow as words of their own, and options have one dash.
+    let text = match shell {
+        clap_complete::Shell::Fish => text.replace(" -l ", " -o "),
+        clap_complete::Shell::Zsh => text.replace("=[", "["),
+        _ => text,
+    };
     Some(single_dashes(&text, "--", "-", table).into_bytes())
 }
 

@@ -232,7 +232,7 @@ fn help_and_man_page_show_options_as_they_are_written() {
     let about =
         ambit_cli::About { name: "rpict", summary: "render", synopsis: "[options] [octree]", notes: "See rtrace." };
     let help = ambit_cli::long_help(&about, &picture_table());
-    for part in ["  -ab <N>", " -vtTYPE ", " --seed <N>", " -av <R> <G> <B>", " -defaults"] {
+    for part in ["  -ab <N>", "  -vtTYPE ", " --seed <N>", " -av <R> <G> <B>", " -defaults"] {
         assert!(help.contains(part), "{part} is missing in\n{help}");
     }
     assert!(!help.contains("--ab"));

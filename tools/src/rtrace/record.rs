@@ -39,7 +39,8 @@ impl<'a> RecordWriter<'a> {
                 Field::Direction => self.vector(out, answer.direction),
                 Field::Value | Field::Contribution => self.colour(out, answer.value),
                 Field::Weight => self.number(out, f64::from(answer.weight)),
-                Field::Coefficient => self.coefficient(out),
+                // The coefficient of a primary ray is one, as a colour.
+                Field::Coefficient => self.colour(out, Rgb::ONE),
                 Field::Length => self.number(out, answer.length),
                 Field::FirstLength => self.number(out, answer.first_length),
                 Field::Coordinates => answer.uv.iter().for_each(|&x| self.number(out, x)),
@@ -80,13 +81,6 @@ impl<'a> RecordWriter<'a> {
         }
         for &x in &c.to_array()[..self.conversion.channels()] {
             self.number(out, f64::from(x));
-        }
-    }
-
-    /// The coefficient of a primary ray is one, whatever is written for colours.
-    fn coefficient(&self, out: &mut Vec<u8>) {
-        for _ in 0..self.conversion.channels() {
-            self.number(out, 1.0);
         }
     }
 

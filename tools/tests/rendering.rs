@@ -1,0 +1,256 @@
+//! rtrace and rpict as a script sees them, against what Radiance 6.0a answered (`recorded/`: standard output, with the
+//! dates cut out). The scene has no random parts, so bytes must agree.
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+const SCENE: &str = include_str!("recorded/scene.rad");
+const RAYS: &[u8] = include_bytes!("recorded/rays.txt");
+
+/// A folder with the scene and its octree.
+struct Bench(TempDir);
+
+impl Bench {
+    fn new() -> Self {
+        let bench = Self(tempfile::tempdir().unwrap());
+        std::fs::write(bench.path("scene.rad"), SCENE).unwrap();
+        let octree = bench.run(env!("CARGO_BIN_EXE_oconv"), "scene.rad", b"");
+        assert!(octree.status.success());
+        std::fs::write(bench.path("scene.oct"), octree.stdout).unwrap();
+        bench
+    }
+
+    fn path(&self, name: &str) -> std::path::PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn run(&self, program: &str, line: &str, input: &[u8]) -> Output {
+        let mut command = Command::new(program);
+        command.args(line.split_whitespace()).current_dir(self.0.path()).stdin(Stdio::piped());
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut stdin = child.stdin.take().unwrap();
+        let input = input.to_vec();
+        // A program may end before it has read everything.
+        let feeder = std::thread::spawn(move || drop(std::io::Write::write_all(&mut stdin, &input)));
+        let output = child.wait_with_output().unwrap();
+        feeder.join().unwrap();
+        output
+    }
+
+    fn rtrace(&self, line: &str, input: &[u8]) -> Output {
+        self.run(env!("CARGO_BIN_EXE_rtrace"), line, input)
+    }
+
+    fn rpict(&self, line: &str, input: &[u8]) -> Output {
+        self.run(env!("CARGO_BIN_EXE_rpict"), line, input)
+    }
+}
+
+/// Output with the dates cut out and the software named as Radiance names it.
+fn masked(bytes: &[u8]) -> Vec<u8> {
+    let own = format!(" (Ambit {})", env!("CARGO_PKG_VERSION"));
+    let mut out = Vec::new();
+    for line in bytes.split_inclusive(|&b| b == b'\n') {
+        let newline = line.ends_with(b"\n");
+        if line.starts_with(b"CAPDATE=") || line.starts_with(b"GMT=") {
+            let name = line.split(|&b| b == b'=').next().unwrap();
+            out.extend_from_slice(name);
+            out.push(b'=');
+        } else if line.starts_with(b"SOFTWARE=") {
+            out.extend_from_slice(String::from_utf8_lossy(line).trim_end().replace(&own, "").as_bytes());
+        } else {
+            out.extend_from_slice(line.strip_suffix(b"\n").unwrap_or(line));
+        }
+        if newline {
+            out.push(b'\n');
+        }
+    }
+    out
+}
+
+fn same(name: &str, made: &[u8], recorded: &[u8]) {
+    let made = masked(made);
+    let (left, right) = (String::from_utf8_lossy(&made), String::from_utf8_lossy(recorded));
+    assert!(made == recorded, "{name}:\n{left}\ninstead of\n{right}");
+}
+
+macro_rules! recorded {
+    ($name:literal) => {
+        &include_bytes!(concat!("recorded/", $name))[..]
+    };
+}
+
+#[test]
+fn records_and_headers_are_those_of_rtrace() {
+    let bench = Bench::new();
+    for (line, recorded) in [
+        ("-w -x 3 -y 2", recorded!("rtrace-header.out")),
+        ("-h -oodvlLpsmM~wcrxRX", recorded!("rtrace-fields.out")),
+        ("-h -ld -ov", recorded!("rtrace-limited.out")),
+        ("-h -I -ov", recorded!("rtrace-irradiance.out")),
+        ("-fac -x 3 -y 2", recorded!("rtrace-colour.out")),
+        ("-fad -oL~s -y 2", recorded!("rtrace-double.out")),
+    ] {
+        let answer = bench.rtrace(&format!("{line} scene.oct"), RAYS);
+        assert_eq!(answer.status.code(), Some(0), "{line}");
+        same(line, &answer.stdout, recorded);
+    }
+}
+
+#[test]
+fn pictures_are_those_of_rpict() {
+    let bench = Bench::new();
+    let views = b"VIEW= -vp 0 -1 0\n\nnothing\nVIEW= -vh 60\n";
+    for (line, input, recorded) in [
+        ("-w -vh 60 -vv 50 -pj 0 -x 40 -y 40", &b""[..], recorded!("rpict-plain.hdr")),
+        ("-w -vta -vh 180 -vv 180 -pj 0 -x 24 -pXYZ -pa 2 -ps 1", b"", recorded!("rpict-xyz.hdr")),
+        ("-w -x 0", b"", recorded!("rpict-empty.hdr")),
+        ("-w -S 3 -pj 0 -x 20 -y 20", views, recorded!("rpict-sequence.hdr")),
+    ] {
+        let answer = bench.rpict(&format!("{line} scene.oct"), input);
+        assert_eq!(answer.status.code(), Some(0), "{line}");
+        same(line, &answer.stdout, recorded);
+    }
+}
+
+#[test]
+fn threads_do_not_change_pictures() {
+    let bench = Bench::new();
+    let picture = |n: u32| bench.rpict(&format!("-n {n} -vh 60 -vv 50 -x 60 -y 60 scene.oct"), b"").stdout;
+    let start = |p: Vec<u8>| p[p.windows(2).position(|w| w == b"\n\n").unwrap()..].to_vec();
+    let one = start(picture(1));
+    assert!(one.len() > 1000);
+    assert_eq!(one, start(picture(3)));
+}
+
+#[test]
+fn interrupted_pictures_are_completed() {
+    let bench = Bench::new();
+    let view = "-w -vh 60 -vv 50 -x 60 -y 60";
+    assert!(bench.rpict(&format!("{view} -z whole.z -o whole.hdr scene.oct"), b"").status.success());
+    let whole = std::fs::read(bench.path("whole.hdr")).unwrap();
+    let depths = std::fs::read(bench.path("whole.z")).unwrap();
+    std::fs::write(bench.path("part.hdr"), &whole[..whole.len() * 2 / 3]).unwrap();
+    std::fs::write(bench.path("part.z"), &depths[..depths.len() * 2 / 3]).unwrap();
+    let answer = bench.rpict("-t 9 -z part.z -ro part.hdr scene.oct", b"");
+    assert!(answer.status.success());
+    let report = String::from_utf8(answer.stderr).unwrap();
+    assert!(report.starts_with("rpict: 0 rays, ") && !report.starts_with("rpict: 0 rays, 0.00%"), "{report}");
+    assert!(report.contains(" 100.00% after "), "{report}");
+    let body = |p: &[u8]| p[p.windows(2).position(|w| w == b"\n\n").unwrap()..].to_vec();
+    let pixels = |p: &[u8]| {
+        let mut reader = ambit_file::PictureReader::new(p, "picture").unwrap();
+        let mut rows = 0;
+        while reader.next_codes().unwrap().is_some() {
+            rows += 1;
+        }
+        rows
+    };
+    let again = std::fs::read(bench.path("part.hdr")).unwrap();
+    assert_eq!(pixels(&again), pixels(&whole));
+    // The lines that were there are still the same.
+    let (a, b) = (body(&whole), body(&again));
+    assert_eq!(a[..a.len() / 2], b[..a.len() / 2]);
+    assert_eq!(std::fs::read(bench.path("part.z")).unwrap().len(), depths.len());
+    // What was renamed meanwhile is gone.
+    let spare = std::fs::read_dir(bench.0.path())
+        .unwrap()
+        .filter(|e| e.as_ref().is_ok_and(|e| e.file_name().to_string_lossy().starts_with("rf")));
+    assert_eq!(spare.count(), 0);
+}
+
+#[test]
+fn frames_that_exist_are_not_made_again() {
+    let bench = Bench::new();
+    let views = b"VIEW= -vh 50\nVIEW= -vh 60\nVIEW= -vh 70\n";
+    std::fs::write(bench.path("f02.hdr"), "mine").unwrap();
+    let line = "-w -S 1 -x 20 -y 20 -o f%02d.hdr scene.oct";
+    assert!(bench.rpict(line, views).status.success());
+    assert_eq!(std::fs::read(bench.path("f02.hdr")).unwrap(), b"mine");
+    let third = std::fs::read(bench.path("f03.hdr")).unwrap();
+    assert!(String::from_utf8_lossy(&third).contains("FRAME=3\nVIEW= -vtv"));
+    let again = bench.rpict(&line.replace("-w ", ""), views);
+    assert_eq!(String::from_utf8_lossy(&again.stderr), "rpict: warning - no output produced\n");
+}
+
+#[test]
+fn errors_have_their_class_and_status() {
+    let bench = Bench::new();
+    let first = |output: &Output| String::from_utf8_lossy(&output.stderr).lines().next().unwrap_or_default().to_owned();
+    for (line, text, status) in [
+        ("-ab1 scene.oct", "rtrace: fatal - command line error at '-ab1'", 1),
+        ("", "rtrace: fatal - missing octree argument", 1),
+        ("-oq scene.oct", "rtrace: fatal - unrecognized output option 'q'", 1),
+        ("-fac -op scene.oct", "rtrace: fatal - color format only with -ov, -or, -ox", 1),
+        ("-fac -pY scene.oct", "rtrace: fatal - color format incompatible with -pY, -pS, -pM", 1),
+        ("-I -op scene.oct", "rtrace: fatal - -I+ and -i+ options require some value output", 1),
+        ("-cs 2 scene.oct", "rtrace: fatal - unsupported spectral sampling", 1),
+        ("@nofile", "rtrace: system - cannot expand '@nofile': No such file or directory", 2),
+        ("none.oct", "rtrace: system - cannot open octree file \"none.oct\": No such file or directory", 2),
+        ("-e /nonexistent/x scene.oct", "", 2),
+        ("-features Nope", "rtrace: missing feature - Nope", 1),
+        ("-P file scene.oct", "rtrace: fatal - persist mode (-P, -PP) is not supported", 1),
+        ("-cs 9 scene.oct", "rtrace: fatal - spectral calculation (-cs above 3) is not supported", 1),
+        ("-ovt scene.oct", "", 0),
+        ("-otv scene.oct", "rtrace: fatal - ray tree output (-otv) is not supported", 1),
+    ] {
+        let answer = bench.rtrace(line, b"");
+        if status != 0 {
+            assert_eq!(first(&answer), text);
+        }
+        assert_eq!(answer.status.code(), Some(status), "{line}");
+    }
+    let answer = bench.rpict("-vu 0 1 0 scene.oct", b"");
+    let lines: Vec<String> = String::from_utf8_lossy(&answer.stderr).lines().map(String::from).collect();
+    assert_eq!(lines[0], "rpict: fatal - view up parallel to view direction");
+    assert!(lines[1].starts_with("rpict: 0 rays, 0.00% after 0.000u 0.000s 0.000r hours on "));
+    let answer = bench.rpict("-o scene.rad scene.oct", b"");
+    assert!(String::from_utf8_lossy(&answer.stderr).contains("cannot open output file \"scene.rad\": File exists\n"));
+    assert_eq!(answer.status.code(), Some(2));
+}
+
+#[test]
+fn error_files_take_messages() {
+    let bench = Bench::new();
+    let answer = bench.rtrace("-e log -y 2 scene.oct", b"0 0 0 0 1 0");
+    assert!(answer.status.success() && answer.stderr.is_empty());
+    let log = std::fs::read_to_string(bench.path("log")).unwrap();
+    assert!(log.starts_with("**************\n*** PID "), "{log}");
+    assert!(log.contains(": rtrace -e log -y 2 scene.oct\n\n"), "{log}");
+    assert!(log.ends_with("rtrace: warning - unexpected EOF on input\n"), "{log}");
+}
+
+#[test]
+#[cfg(unix)]
+fn a_signal_ends_a_picture_in_order() {
+    let bench = Bench::new();
+    let program = Path::new(env!("CARGO_BIN_EXE_rpict"));
+    let mut command = Command::new(program);
+    command.args("-w -x 6000 -y 6000 -ps 1 -o big.hdr scene.oct".split_whitespace()).current_dir(bench.0.path());
+    let child = command.stderr(Stdio::piped()).spawn().unwrap();
+    // Until the first lines are out.
+    let size = || std::fs::metadata(bench.path("big.hdr")).map_or(0, |m| m.len());
+    for _ in 0..2000 {
+        if size() > 1000 {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(size() > 1000);
+    assert!(Command::new("kill").arg(child.id().to_string()).status().unwrap().success());
+    let answer = child.wait_with_output().unwrap();
+    assert_eq!(answer.status.code(), Some(3));
+    let text = String::from_utf8_lossy(&answer.stderr);
+    assert!(text.starts_with("rpict: signal - Terminate\nrpict: "), "{text}");
+}
+
+#[test]
+fn man_pages_and_help_are_there() {
+    let bench = Bench::new();
+    for answer in [bench.rpict("--man", b""), bench.rtrace("--man", b"")] {
+        assert!(String::from_utf8_lossy(&answer.stdout).contains("\n.TH "));
+    }
+    assert!(String::from_utf8_lossy(&bench.rtrace("--help", b"").stdout).contains("Usage: rtrace "));
+    assert!(bench.rtrace("-version", b"").stdout.starts_with(b"RADIANCE "));
+}
