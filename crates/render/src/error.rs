@@ -32,6 +32,11 @@ impl Error {
         }
     }
 
+    /// An error whose text is complete, with the place of a primitive.
+    pub(crate) fn at(scene: &Scene, id: ObjectId, text: impl Into<String>) -> Self {
+        Self { location: scene.location(id), ..Self::user(text) }
+    }
+
     /// A file that a primitive names and the search path does not have.
     pub(crate) fn missing_file(scene: &Scene, id: ObjectId, what: &str, name: &str) -> Self {
         Self {

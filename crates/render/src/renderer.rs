@@ -39,6 +39,8 @@ pub struct Renderer {
     cache: Cache,
     tally: Tally,
     works: Vec<Mutex<Work>>,
+    /// Failed operations of function files that have been warned about.
+    told: Vec<ambit_cal::Warning>,
     rays: u64,
     pub(crate) sharing: Option<Sharing>,
 }
@@ -62,14 +64,16 @@ impl Renderer {
         let cache = Cache::new(params, scene.cube.origin, scene.cube.edge);
         let sources = scene.sources.len();
         let works = (0..=rayon::current_num_threads()).map(|_| Mutex::new(Work::new(sources))).collect();
-        Ok(Self { scene, options, cache, tally: Tally::new(sources), works, rays: 0, sharing: None })
+        Ok(Self { scene, options, cache, tally: Tally::new(sources), works, told: Vec::new(), rays: 0, sharing: None })
     }
 
-    /// Answers `requests`, in order. Warnings of the ambient file go to `notify`.
+    /// Answers `requests`, in order. Warnings (of the ambient file, of function files) go to `notify`.
     pub fn trace(&mut self, requests: &[Request], notify: &dyn Notify) -> Result<Vec<Answer>, Error> {
         let mut answers = Vec::with_capacity(requests.len());
         for batch in requests.chunks(BATCH) {
-            self.batch(batch, &mut answers)?;
+            let outcome = self.batch(batch, &mut answers);
+            self.complain(notify);
+            outcome?;
             self.exchange(notify, false)?;
         }
         Ok(answers)
@@ -116,6 +120,21 @@ impl Renderer {
             self.rays += std::mem::take(&mut work.rays);
         }
         self.scene.fault.take().map_or(Ok(()), Err)
+    }
+
+    /// Tells what function files had no values for: each failed operation and each modifier once.
+    fn complain(&mut self, notify: &dyn Notify) {
+        for work in &self.works {
+            let mut work = work.lock().unwrap_or_else(PoisonError::into_inner);
+            for warning in work.cal.drain_warnings() {
+                if !self.told.contains(&warning) {
+                    self.told.push(warning);
+                    notify.warn(&warning.to_string());
+                }
+            }
+        }
+        let objects = &self.scene.objects;
+        self.scene.complaints.drain(|id| notify.warn(&format!("compute error for {}", objects.describe(id))));
     }
 
     /// Rays traced so far.

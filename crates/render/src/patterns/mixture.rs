@@ -1,12 +1,13 @@
 //! Mixtures: two modifiers blended.
 
 use super::compiler::{Compiler, Functions};
+use super::lookup::{Layout, Lookup};
 use crate::Error;
 use crate::materials::Finish;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{Colour, EPSILON};
-use ambit_scene::{Kind, ObjectId, Scene, VOID};
+use ambit_scene::{Kind, ObjectId, Scene, TextBlock, VOID};
 
 /// A compiled mixture.
 #[derive(Debug)]
@@ -22,17 +23,23 @@ pub(crate) struct Mixture {
 enum Share {
     /// mixfunc.
     Function(Functions),
+    /// mixdata, mixpict.
+    Lookup(Lookup),
+    /// mixtext: all inside glyphs, nothing elsewhere.
+    Text(Box<TextBlock>),
 }
+
+/// Index of mixtext's spacing among its numbers.
+const MIXTEXT_SPACING: usize = 9;
 
 impl Mixture {
     pub(crate) fn compile(scene: &Scene, id: ObjectId, compiler: &mut Compiler<'_>) -> Result<Self, Error> {
+        scene.check_arguments(id)?;
         let share = match scene.object(id).kind {
-            Kind::MixFunc => {
-                if scene.string_count(id) < 4 {
-                    return Err(Error::primitive(scene, id, "bad # arguments"));
-                }
-                Share::Function(compiler.functions(scene, id, &[2], 3)?)
-            }
+            Kind::MixFunc => Share::Function(compiler.functions(scene, id, &[2], 3)?.without_material()?),
+            Kind::MixData => Share::Lookup(Lookup::compile(scene, id, compiler, Layout::MIXDATA, true)?),
+            Kind::MixPict => Share::Lookup(Lookup::compile(scene, id, compiler, Layout::MIXPICT, true)?),
+            Kind::MixText => Share::Text(compiler.lettering(scene, id, 2, MIXTEXT_SPACING)?.into()),
             _ => return Err(Error::unsupported(scene, id)),
         };
         let side = |i: usize| {
@@ -61,6 +68,8 @@ impl Walk<'_> {
     ) -> Option<bool> {
         let fore = match &mixture.share {
             Share::Function(functions) => self.three(ray, functions)?[0].clamp(0.0, 1.0),
+            Share::Lookup(lookup) => self.look_up(ray, lookup)?[0].clamp(0.0, 1.0),
+            Share::Text(text) => f64::from(u8::from(self.lettered(ray, text))),
         };
         let shares = [fore, 1.0 - fore];
         let scene = self.tracer.scene;

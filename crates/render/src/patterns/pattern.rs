@@ -1,26 +1,60 @@
 //! Patterns: factors on the colour.
 
 use super::compiler::{Compiler, Functions};
+use super::lookup::{Layout, Lookup};
 use crate::Error;
 use crate::materials::Finish;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::Rgb;
-use ambit_cal::Inputs;
-use ambit_scene::{Kind, ObjectId, Scene};
+use ambit_scene::{Kind, ObjectId, Scene, TextBlock};
 
 /// A compiled pattern.
 #[derive(Debug)]
 pub(crate) enum Pattern {
     /// brightfunc, colorfunc: one expression for all channels, or one for each.
     Function(Functions),
+    /// brightdata: one value for all channels.
+    Bright(Lookup),
+    /// colordata, colorpict.
+    Colour(Lookup),
+    /// brighttext, colortext.
+    Text {
+        /// The glyphs.
+        text: Box<TextBlock>,
+        /// Factor inside glyphs.
+        fore: Rgb,
+        /// Factor elsewhere.
+        back: Rgb,
+    },
 }
+
+/// Where the numbers of a text begin after its origin and motion vectors.
+const TEXT_COLOURS: usize = 9;
 
 impl Pattern {
     pub(crate) fn compile(scene: &Scene, id: ObjectId, compiler: &mut Compiler<'_>) -> Result<Self, Error> {
+        scene.check_arguments(id)?;
+        let mut functions = |expressions: &[usize], file| {
+            compiler.functions(scene, id, expressions, file)?.without_material().map(Self::Function)
+        };
+        let r = scene.reals(id);
         match scene.object(id).kind {
-            Kind::BrightFunc => Ok(Self::Function(compiler.functions(scene, id, &[0], 1)?)),
-            Kind::ColorFunc => Ok(Self::Function(compiler.functions(scene, id, &[0, 1, 2], 3)?)),
+            Kind::BrightFunc => functions(&[0], 1),
+            Kind::ColorFunc => functions(&[0, 1, 2], 3),
+            Kind::BrightData => Lookup::compile(scene, id, compiler, Layout::BRIGHTDATA, false).map(Self::Bright),
+            Kind::ColorData => Lookup::compile(scene, id, compiler, Layout::COLORDATA, false).map(Self::Colour),
+            Kind::ColorPict => Lookup::compile(scene, id, compiler, Layout::COLORPICT, false).map(Self::Colour),
+            Kind::BrightText => {
+                let text = compiler.lettering(scene, id, 0, TEXT_COLOURS + 2)?.into();
+                let grey = |i: usize| Rgb::splat(r[TEXT_COLOURS + i] as f32);
+                Ok(Self::Text { text, fore: grey(0), back: grey(1) })
+            }
+            Kind::ColorText => {
+                let text = compiler.lettering(scene, id, 0, TEXT_COLOURS + 6)?.into();
+                let colour = |i: usize| Rgb::new(r[i] as f32, r[i + 1] as f32, r[i + 2] as f32);
+                Ok(Self::Text { text, fore: colour(TEXT_COLOURS), back: colour(TEXT_COLOURS + 3) })
+            }
             _ => Err(Error::unsupported(scene, id)),
         }
     }
@@ -29,43 +63,17 @@ impl Pattern {
 impl Walk<'_> {
     /// Multiplies the colour by a pattern; one that has no value here leaves it alone.
     pub(crate) fn apply_pattern(&mut self, ray: &Ray<'_>, pattern: &Pattern, finish: &mut Finish) {
-        match pattern {
-            Pattern::Function(functions) => {
-                if let Some([r, g, b]) = self.three(ray, functions) {
-                    finish.pattern *= Rgb::new(r as f32, g as f32, b as f32);
-                }
+        let value = match pattern {
+            Pattern::Function(functions) => self.three(ray, functions),
+            Pattern::Bright(lookup) => self.look_up(ray, lookup).map(|v| [v[0]; 3]),
+            Pattern::Colour(lookup) => self.look_up(ray, lookup),
+            Pattern::Text { text, fore, back } => {
+                finish.pattern *= if self.lettered(ray, text) { *fore } else { *back };
+                return;
             }
+        };
+        if let Some([r, g, b]) = value {
+            finish.pattern *= Rgb::new(r as f32, g as f32, b as f32);
         }
-    }
-
-    /// Values of three expressions, or of one expression three times; None where one is undefined.
-    pub(crate) fn three(&mut self, ray: &Ray<'_>, functions: &Functions) -> Option<[f64; 3]> {
-        let channels = self.channels(ray, functions);
-        let mut pass = self.work.cal.pass(Inputs { channels: &channels, reals: &functions.reals });
-        let mut values = [0.0; 3];
-        let mut fault = None;
-        for (value, program) in values.iter_mut().zip(&functions.programs) {
-            match pass.eval(program) {
-                Ok(v) if v.is_finite() => *value = v,
-                Ok(_) => return None,
-                Err(f) => {
-                    fault = Some(f);
-                    break;
-                }
-            }
-        }
-        if let Some(f) = fault {
-            self.evaluation_failed(&f);
-            return None;
-        }
-        if functions.programs.len() == 1 {
-            values = [values[0]; 3];
-        }
-        Some(values)
-    }
-
-    /// A fault that ends the calculation, unless it is one that only leaves the modifier without effect.
-    pub(crate) fn evaluation_failed(&self, fault: &ambit_cal::Fault) {
-        self.fail(Error::user(fault.to_string()));
     }
 }

@@ -11,6 +11,7 @@ pub use load::{Definition, Environment, Loaded, OctreeSource, load};
 pub(crate) use material::compile_material;
 pub(crate) use modifiers::{Modifiers, Node};
 
+use crate::patterns::Complaints;
 use crate::sources::{Emitter, Relay, Source, SourceId};
 use crate::{Error, Options, Selection};
 use ambit_scene::{ObjectId, Scene, VOID};
@@ -33,6 +34,8 @@ pub(crate) struct Prepared {
     /// Modifiers whose surfaces the ambient calculation leaves out; empty if none.
     left_out: Vec<bool>,
     pub(crate) fault: Fault,
+    /// Modifiers that had no value on some ray.
+    pub(crate) complaints: Complaints,
     pub(crate) cube: ambit_octree::Cube,
 }
 
@@ -45,6 +48,7 @@ impl Prepared {
         let world = world::build(&scene, top_level.clone(), &volumes, &modifiers, environment)?;
         let left_out = left_out(&scene, &options.ambient.selection);
         scene.shrink_to_fit();
+        let complaints = Complaints::new(scene.len());
         let mut prepared = Self {
             objects: scene,
             modifiers,
@@ -56,6 +60,7 @@ impl Prepared {
             clip_sets: crate::antimatter::ClipSets::default(),
             left_out,
             fault: Fault::default(),
+            complaints,
             cube,
         };
         crate::sources::add_virtual_sources(&mut prepared, options, environment);

@@ -57,7 +57,7 @@ impl Modifiers {
             blocks: vec![false; last],
             bends: false,
         };
-        let mut compiler = crate::patterns::Compiler::new(environment)?;
+        let mut compiler = crate::patterns::Compiler::new(scene, environment)?;
         for id in 0..last as ObjectId {
             let object = scene.object(id);
             if !object.kind.is_modifier() {
