@@ -2,6 +2,7 @@
 
 use super::builtin_font;
 use super::image::Image;
+use super::spectral_image::SpectralImage;
 use crate::Error;
 use crate::prepare::Environment;
 use ambit_file::os_text;
@@ -19,13 +20,20 @@ pub(crate) struct Auxiliary<'e> {
     tables: Loaded<DataTable>,
     images: Loaded<Image>,
     fonts: Loaded<Font>,
+    spectral_images: Loaded<SpectralImage>,
 }
 
 type Loaded<T> = HashMap<String, Result<Arc<T>, Error>>;
 
 impl<'e> Auxiliary<'e> {
     pub(crate) fn new(environment: &'e Environment<'e>) -> Self {
-        Self { environment, tables: HashMap::new(), images: HashMap::new(), fonts: HashMap::new() }
+        Self {
+            environment,
+            tables: HashMap::new(),
+            images: HashMap::new(),
+            fonts: HashMap::new(),
+            spectral_images: HashMap::new(),
+        }
     }
 
     /// The data file `name`, as primitive `id` calls it.
@@ -73,6 +81,22 @@ impl<'e> Auxiliary<'e> {
     /// The bytes of a text file.
     pub(crate) fn text(&self, scene: &Scene, id: ObjectId, name: &str) -> Result<Vec<u8>, Error> {
         Ok(fetch(self.environment, scene, id, "text file", name)?.1)
+    }
+
+    /// The hyperspectral picture `name`.
+    pub(crate) fn spectral_image(
+        &mut self,
+        scene: &Scene,
+        id: ObjectId,
+        name: &str,
+    ) -> Result<Arc<SpectralImage>, Error> {
+        let environment = self.environment;
+        once(&mut self.spectral_images, name, || {
+            let (path, bytes) = fetch(environment, scene, id, "hyperspectral image", name)?;
+            let shown = path.to_string_lossy();
+            SpectralImage::parse(&bytes, &shown)
+                .ok_or_else(|| Error::at(scene, id, format!("bad hyperspectral image \"{shown}\"")))
+        })
     }
 }
 

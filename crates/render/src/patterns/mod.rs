@@ -2,6 +2,7 @@
 
 mod auxiliary;
 mod builtin_font;
+mod cie;
 mod compiler;
 mod complaints;
 mod evaluate;
@@ -12,6 +13,9 @@ mod lookup;
 mod mixture;
 mod pattern;
 mod site;
+mod spectral;
+mod spectral_image;
+mod spectrum;
 mod texture;
 
 pub(crate) use compiler::Compiler;

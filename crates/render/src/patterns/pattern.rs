@@ -2,6 +2,7 @@
 
 use super::compiler::{Compiler, Functions};
 use super::lookup::{Layout, Lookup};
+use super::spectral::{self, Spectral};
 use crate::Error;
 use crate::materials::Finish;
 use crate::ray::Ray;
@@ -27,6 +28,10 @@ pub(crate) enum Pattern {
         /// Factor elsewhere.
         back: Rgb,
     },
+    /// spectrum, specfile.
+    Constant(Rgb),
+    /// specfunc, specdata, specpict.
+    Spectral(Box<Spectral>),
 }
 
 /// Where the numbers of a text begin after its origin and motion vectors.
@@ -55,6 +60,9 @@ impl Pattern {
                 let colour = |i: usize| Rgb::new(r[i] as f32, r[i + 1] as f32, r[i + 2] as f32);
                 Ok(Self::Text { text, fore: colour(TEXT_COLOURS), back: colour(TEXT_COLOURS + 3) })
             }
+            Kind::Spectrum => spectral::spectrum(scene, id),
+            Kind::SpecFile => spectral::specfile(scene, id, compiler),
+            Kind::SpecFunc | Kind::SpecData | Kind::SpecPict => Spectral::compile(scene, id, compiler),
             _ => Err(Error::unsupported(scene, id)),
         }
     }
@@ -71,6 +79,11 @@ impl Walk<'_> {
                 finish.pattern *= if self.lettered(ray, text) { *fore } else { *back };
                 return;
             }
+            Pattern::Constant(colour) => {
+                finish.pattern *= *colour;
+                return;
+            }
+            Pattern::Spectral(spectral) => self.spectral(ray, spectral).map(|c| c.as_dvec3().to_array()),
         };
         if let Some([r, g, b]) = value {
             finish.pattern *= Rgb::new(r as f32, g as f32, b as f32);
