@@ -171,6 +171,8 @@ impl<'p> Ray<'p> {
 
     /// A ray from this one's hit point, and whether it may live. `coefficient` is None where no colour goes with it
     /// (pass-through, mist), which keeps Russian roulette out.
+    #[expect(clippy::inline_always, reason = "a ray is large: built in place it is not copied")]
+    #[inline(always)]
     pub(crate) fn spawn(
         &'p self,
         kind: Kinds,

@@ -78,6 +78,8 @@ impl Walk<'_> {
     }
 
     /// A child of a shaded ray: spawned with its share of the parent's throughput, the medium before the hit included.
+    #[expect(clippy::inline_always, reason = "a ray is large: built in place it is not copied")]
+    #[inline(always)]
     pub(crate) fn child<'p>(
         &self,
         ray: &'p Ray<'_>,

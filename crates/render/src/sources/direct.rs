@@ -202,26 +202,32 @@ impl Walk<'_> {
 
     /// Light that arrives from a candidate, or None if it is blocked.
     fn shadow(&mut self, ray: &Ray<'_>, candidate: &Candidate) -> Option<Rgb> {
-        let source = &self.tracer.scene.sources[candidate.source as usize];
-        let behind =
-            ray.hit.as_ref().is_some_and(|h| h.normal.dot(candidate.direction) * h.normal.dot(ray.direction) > 0.0);
+        let tracer = self.tracer;
+        let source = &tracer.scene.sources[candidate.source as usize];
+        let direction = candidate.direction;
+        // Most rays either arrive or meet something opaque: only what is neither needs a ray to shade with.
+        let plain = ray.clipped == 0 && ray.next_clipped == 0 && ray.limit >= FAR && source.image.is_none();
+        let mut found = None;
+        if plain {
+            self.work.rays += 1;
+            let query = ambit_trace::Ray { origin: ray.point, direction, limit: FAR };
+            let target = if matches!(source.emitter, Emitter::Distant) { None } else { Some(source.object) };
+            match tracer.scene.world.shadow(&query, target) {
+                Shadow::Reaches => return Some(candidate.potential),
+                Shadow::Blocked(_) => return None,
+                Shadow::Other(hit) => found = Some(hit),
+            }
+        }
+        let behind = ray.hit.as_ref().is_some_and(|h| h.normal.dot(direction) * h.normal.dot(ray.direction) > 0.0);
         let kind = if behind { Kinds::SHADOW_TRANSMITTED } else { Kinds::SHADOW_REFLECTED };
-        let (child, _) = ray.spawn(kind, candidate.direction, None, &self.tracer.options.limits, 0);
+        let (child, _) = ray.spawn(kind, direction, None, &tracer.options.limits, 0);
         let mut child = child.aimed(candidate.source);
         if source.image.is_some() {
             return self.shadow_by_relay(child, candidate.coefficient);
         }
-        self.work.rays += 1;
-        let target = if matches!(source.emitter, Emitter::Distant) { None } else { Some(source.object) };
-        if child.clipped == 0 && child.limit >= FAR {
-            let query = ambit_trace::Ray { origin: child.origin, direction: child.direction, limit: FAR };
-            match self.tracer.scene.world.shadow(&query, target) {
-                Shadow::Reaches => return Some(candidate.potential),
-                Shadow::Blocked(_) => return None,
-                Shadow::Other(hit) => self.shade_hit(&mut child, hit),
-            }
-        } else {
-            self.evaluate(&mut child);
+        match found {
+            Some(hit) => self.shade_hit(&mut child, hit),
+            None => self.evaluate(&mut child),
         }
         let value = child.value;
         (value.mean() > EPSILON as f32).then_some(candidate.coefficient * value)
