@@ -90,7 +90,8 @@ fn records_and_headers_are_those_of_rtrace() {
         ("-h -ld -ov", recorded!("rtrace-limited.out")),
         ("-h -I -ov", recorded!("rtrace-irradiance.out")),
         ("-fac -x 3 -y 2", recorded!("rtrace-colour.out")),
-        ("-fad -oL~s -y 2", recorded!("rtrace-double.out")),
+        ("-fad -oo~sM -y 2", recorded!("rtrace-double.out")),
+        ("-h -odsmM", recorded!("rtrace-cast.out")),
     ] {
         let answer = bench.rtrace(&format!("{line} scene.oct"), RAYS);
         assert_eq!(answer.status.code(), Some(0), "{line}");

@@ -239,13 +239,26 @@ impl Walk<'_> {
     fn locate(&mut self, ray: &mut Ray<'_>) {
         self.work.rays += 1;
         let query = ambit_trace::Ray { origin: ray.origin, direction: ray.direction, limit: ray.limit };
-        let Some(hit) = self.tracer.scene.world.nearest(&query) else { return };
+        let Some(hit) = self.tracer.scene.world.nearest(&query) else {
+            if ray.limit >= FAR {
+                self.meet_distant(ray);
+                self.name_material(ray);
+            }
+            return;
+        };
         ray.distance = hit.distance;
         ray.unmirrored_length = hit.distance;
         ray.point = ray.origin + ray.direction * hit.distance;
         ray.normal = if hit.cosine < 0.0 { -hit.normal } else { hit.normal };
-        ray.material = self.tracer.scene.modifiers.material(hit.modifier).map_or(VOID, |m| m.1);
         ray.hit = Some(hit);
+        self.name_material(ray);
+    }
+
+    /// The material that would shade a hit.
+    fn name_material(&self, ray: &mut Ray<'_>) {
+        if let Some(hit) = &ray.hit {
+            ray.material = self.tracer.scene.modifiers.material(hit.modifier).map_or(VOID, |m| m.1);
+        }
     }
 }
 

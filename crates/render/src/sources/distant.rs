@@ -12,15 +12,19 @@ use std::f64::consts::PI;
 impl Walk<'_> {
     /// Shades a ray that leaves the scene with the distant source it falls in, if any.
     pub(crate) fn distant(&mut self, ray: &mut Ray<'_>) {
-        ray.distance = FAR;
-        ray.point = ray.origin;
-        let Some(id) = self.find_distant(ray) else { return };
-        let source = &self.tracer.scene.sources[id as usize];
-        ray.hit = Some(stand_in(source.object, source.modifier, FAR, -ray.direction));
-        let modifier = source.modifier;
+        let Some(modifier) = self.meet_distant(ray) else { return };
         if !self.shade_with(ray, modifier, Finish { pattern: Rgb::ONE, tilt: DVec3::ZERO }) {
             ray.hit = None;
         }
+    }
+
+    /// Lets a ray that leaves the scene hit the distant source it falls in, if any; returns the source's modifier.
+    pub(crate) fn meet_distant(&self, ray: &mut Ray<'_>) -> Option<ObjectId> {
+        ray.distance = FAR;
+        ray.point = ray.origin;
+        let source = &self.tracer.scene.sources[self.find_distant(ray)? as usize];
+        ray.hit = Some(stand_in(source.object, source.modifier, FAR, -ray.direction));
+        Some(source.modifier)
     }
 
     fn find_distant(&self, ray: &Ray<'_>) -> Option<SourceId> {
