@@ -1,9 +1,8 @@
 //! The CIE 1931 colour matching functions of the 2° observer, and the way from a spectrum in equal bands to RGB.
 //!
-//! Each function is normalised to unit area, so equal energy gives X = Y = Z. As in Radiance the functions are summed
-//! over whole nanometres, borders of bands being cut to such, both ends of a band's range counted to the longer
-//! neighbour's cost: a border at the integer wavelength e divides the observer at e + 1.5 nm (measured: with this the
-//! folded values agree to 5e-4).
+//! Each function is normalised to unit area, so equal energy gives X = Y = Z. Borders of bands are cut to whole
+//! nanometres, as in Radiance, and a border at e divides the observer at e + 1.5 nm: so measured, folded values agree
+//! with Radiance's to 2e-3 of the largest.
 
 use ambit_base::Rgb;
 use glam::{DMat3, DVec3};

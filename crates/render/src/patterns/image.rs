@@ -113,3 +113,47 @@ impl Image {
         sum
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ambit_file::{Header, Picture};
+
+    fn written(space: PixelSpace, header_lines: &[&str]) -> tempfile::NamedTempFile {
+        let mut header = Header::new();
+        header.extend(header_lines);
+        let grey = [0.502, 0.6, 0.701, 0.799, 0.0999, 0.0, 0.0, 0.0];
+        let pixels = grey.map(Rgb::splat).to_vec();
+        let file = tempfile::NamedTempFile::new().unwrap();
+        Picture { header, width: 4, height: 2, space, pixels }.write(file.as_file()).unwrap();
+        file
+    }
+
+    /// As rtrace answered, whatever the exposure.
+    #[test]
+    fn colours_are_blended_and_taper_off() {
+        let file = written(PixelSpace::Rgb, &["EXPOSURE=2"]);
+        let image = Image::open(file.path().to_str().unwrap()).unwrap();
+        for (u, v, expected) in
+            [(0.25, 0.0, 0.538_574_2), (2.0, 0.0, 0.798_828_1), (0.0, 0.5, 0.300_903_3), (2.2, 0.0, 0.828_125)]
+        {
+            let [r, g, b] = image.sample(u, v);
+            assert!((r - expected).abs() < 1e-6 && r == g && g == b, "({u}, {v}): {r}");
+        }
+        assert_eq!(image.bytes(), 32);
+    }
+
+    #[test]
+    fn tall_pixels_make_tall_pictures() {
+        let file = written(PixelSpace::Rgb, &["PIXASPECT=4"]);
+        let image = Image::open(file.path().to_str().unwrap()).unwrap();
+        assert_eq!((image.u.end, image.v.end), (1.0, 2.0));
+    }
+
+    #[test]
+    fn other_files_are_refused() {
+        let file = written(PixelSpace::Xyz, &[]);
+        assert!(matches!(Image::open(file.path().to_str().unwrap()), Err(BadImage::Space)));
+        assert!(matches!(Image::open("no such picture"), Err(BadImage::Unreadable(_))));
+    }
+}

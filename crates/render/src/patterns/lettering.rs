@@ -23,6 +23,8 @@ impl Compiler<'_> {
         let bad = |text: &str| Error::primitive(scene, id, text);
         let r = scene.reals(id);
         let (Some(name), 9..) = (scene.string(id, font), r.len()) else { return Err(bad("bad # arguments")) };
+        let vector = |i: usize| DVec3::new(r[i], r[i + 1], r[i + 2]);
+        let (origin, right, down) = (vector(0), vector(3), vector(6));
         let text = match scene.string_count(id) - font {
             0 | 1 => return Err(bad("bad # arguments")),
             2 => {
@@ -40,8 +42,7 @@ impl Compiler<'_> {
         };
         let font = self.files.font(scene, id, &name)?;
         let lines: Vec<&[u8]> = text.split(|&b| b == b'\n').collect();
-        let vector = |i: usize| DVec3::new(r[i], r[i + 1], r[i + 2]);
-        TextBlock::new(font, lines, vector(0), vector(3), vector(6), r.get(spacing).copied())
+        TextBlock::new(font, lines, origin, right, down, r.get(spacing).copied())
             .map_err(|problem| bad(&problem.to_string()))
     }
 }
