@@ -9,13 +9,14 @@
 //! | `ray` | questions and answers |
 //! | `polygon`, `facet`, `quadric`, `mesh` | hit tests |
 //! | `best` | which of several hits counts |
-//! | `bounds`, `frame`, `split`, `tree`, `node` | building |
+//! | `bounds`, `frame`, `split`, `tree`, `collapse`, `node` | building |
 //! | `walk`, `simd`, `search` | walking |
 //! | `builder`, `world`, `item` | what is built and asked |
 
 mod best;
 mod bounds;
 mod builder;
+mod collapse;
 mod facet;
 mod frame;
 mod item;

@@ -2,14 +2,14 @@
 //!
 //! Surfaces with equal boxes are grouped first, since clustering would chain them. Large inputs are cut into portions
 //! by [`crate::split`], which bounds the memory that clustering takes; obvhs clusters each portion (PLOC, Meister and
-//! Bittner 2018, with parallel reinsertion, Meister and Bittner 2018b); if its tree is too deep the splitter does that portion too. The
-//! binary tree is then collapsed: up to four surfaces of a kind become a leaf, and nodes take in their largest
-//! children until they have eight (Wald, Benthin and Boulos 2008).
+//! Bittner 2018, with parallel reinsertion, Meister and Bittner 2018b); if its tree is too deep the splitter does that portion too. Up
+//! to four surfaces of a kind become a leaf; [`crate::collapse`] makes wide nodes of the rest.
 
 use crate::BuildError;
 use crate::bounds::Box32;
+use crate::collapse::Collapse;
 use crate::facet::LANES;
-use crate::node::{self, ITEMS, LEAF, MOST_LEAVES, Node, WIDTH};
+use crate::node::{self, ITEMS, MOST_LEAVES, Node};
 use crate::split::split;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::{Bvh2, reinsertion::ReinsertionOptimizer};
@@ -24,10 +24,6 @@ const REINSERTION: f32 = 0.1;
 
 /// Levels after which the splitter halves without looking.
 const DEEPEST: usize = 64;
-
-/// What f32 arithmetic of the walk can be wrong by, in units of the coordinates involved: eight roundings, twice what
-/// the analysis in [`crate::walk`] needs.
-pub(crate) const SLACK: f32 = 8.0 * 0.5 * f32::EPSILON;
 
 /// Nodes, and the surfaces of each leaf.
 #[derive(Debug)]
@@ -44,9 +40,9 @@ pub(crate) struct Tree {
 
 /// A subtree or leaf with its box.
 #[derive(Clone, Copy, Debug)]
-struct Child {
-    bounds: Box32,
-    word: u32,
+pub(crate) struct Child {
+    pub(crate) bounds: Box32,
+    pub(crate) word: u32,
 }
 
 /// What lies under a node of the binary tree: a few surfaces that may still join a leaf, or something finished.
@@ -57,9 +53,10 @@ enum Under {
 
 /// A binary tree and its leaves.
 #[derive(Default)]
-struct Part {
-    nodes: Vec<[Child; 2]>,
-    blocks: [Vec<[u32; LANES]>; 2],
+pub(crate) struct Part {
+    /// Children before their parents.
+    pub(crate) nodes: Vec<[Child; 2]>,
+    pub(crate) blocks: [Vec<[u32; LANES]>; 2],
 }
 
 /// Surfaces numbered kind by kind: `boxes[i]` is that of surface `i`, the first `counts[0]` are of kind 0 and so on.
@@ -93,9 +90,8 @@ pub(crate) fn build(boxes: &[Box32], counts: [usize; 2]) -> Result<Tree, BuildEr
         part.finish(&under)
     });
     drop(order);
-    part.nodes.shrink_to_fit();
-    let (nodes, depth) = collapse(root, &part.nodes);
-    Ok(Tree { nodes, depth, blocks: part.blocks, counts })
+    let Collapse { nodes, depth, blocks, .. } = Collapse::run(part, root);
+    Ok(Tree { nodes, depth, blocks, counts })
 }
 
 impl Input<'_> {
@@ -255,42 +251,4 @@ impl Part {
             }
         }
     }
-}
-
-/// Eight-wide nodes in depth-first order, and their depth.
-fn collapse(root: Option<Child>, binary: &[[Child; 2]]) -> (Vec<Node>, usize) {
-    let mut nodes = vec![Node::EMPTY];
-    let mut depth = 1;
-    let mut todo: Vec<(Child, usize, usize)> = root.map(|r| (r, 0, 1)).into_iter().collect();
-    while let Some((from, slot, level)) = todo.pop() {
-        depth = depth.max(level);
-        let mut children = vec![from];
-        loop {
-            let inner = children.iter().enumerate().filter(|(_, c)| c.word & LEAF == 0);
-            let largest = inner.max_by(|a, b| a.1.bounds.half_area().total_cmp(&b.1.bounds.half_area()));
-            let Some((i, c)) = largest else { break };
-            let [a, b] = binary[c.word as usize];
-            children[i] = a;
-            children.push(b);
-            if children.len() == WIDTH {
-                break;
-            }
-        }
-        for (i, c) in children.iter().enumerate() {
-            for axis in 0..3 {
-                let (low, high) = (c.bounds.min[axis], c.bounds.max[axis]);
-                nodes[slot].planes[2 * axis][i] = (low - SLACK * low.abs()).next_down();
-                nodes[slot].planes[2 * axis + 1][i] = (high + SLACK * high.abs()).next_up();
-            }
-            nodes[slot].child[i] = if c.word & LEAF == 0 {
-                nodes.push(Node::EMPTY);
-                todo.push((*c, nodes.len() - 1, level + 1));
-                nodes.len() as u32 - 1
-            } else {
-                c.word
-            };
-        }
-    }
-    nodes.shrink_to_fit();
-    (nodes, depth)
 }

@@ -7,9 +7,9 @@
 //! the origin is shifted by 8u|o| against each plane, plus `noise`, a bound of the rounding in f64; so no box is missed
 //! that holds a point of the ray, and the widening costs nothing in the walk itself (compare Ize 2013).
 
+use crate::collapse::SLACK;
 use crate::node::{LEAF, Node, WIDTH};
 use crate::ray::Ray;
-use crate::tree::SLACK;
 use ambit_base::DVec3;
 use ambit_scene::Bounds;
 

@@ -114,6 +114,11 @@ impl World {
         self.bends
     }
 
+    /// Counts for those who tune: nodes, blocks of triangles, blocks of quadrilaterals, other items.
+    pub fn sizes(&self) -> [usize; 4] {
+        [self.nodes.len(), self.triangles.len(), self.quads.len(), self.items.len()]
+    }
+
     /// Bytes held by this world alone, without the instances and meshes it shares.
     pub fn memory(&self) -> usize {
         fn held<T>(v: &Vec<T>) -> usize {
