@@ -214,8 +214,7 @@ impl WorldBuilder {
         };
         let frame = Frame::around(exact());
         let boxes: Vec<Box32> = exact().map(|b| frame.child(b)).collect();
-        let tree = tree::build(&boxes, [self.triangles.len, self.quads.len])?;
-        drop(boxes);
+        let tree = tree::build(boxes, [self.triangles.len, self.quads.len])?;
         self.known = HashMap::new();
         Ok(self.assemble(tree, frame))
     }

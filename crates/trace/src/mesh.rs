@@ -107,8 +107,7 @@ impl Mesh {
         let exact = || geometry.triangles.iter().map(|t| if sound(t) { bounds::around(of(t)) } else { NOWHERE });
         let frame = Frame::around(exact());
         let boxes: Vec<Box32> = exact().map(|b| frame.child(b)).collect();
-        let tree = tree::build(&boxes, [boxes.len(), 0])?;
-        drop(boxes);
+        let tree = tree::build(boxes, [geometry.triangles.len(), 0])?;
         let trios = tree.blocks[0].iter().map(|list| pack(list, &geometry.triangles, &vertices)).collect();
         let shaded = geometry.normals.len() + geometry.uvs.len() > 0;
         Ok(Self {

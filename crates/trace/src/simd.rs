@@ -68,7 +68,16 @@ mod present {
         let w = s.world;
         let (o, d) = (s.ray.origin, s.ray.direction);
         let (of, df) = (splat(o), splat(d));
-        walk::<N>(&w.nodes, &entry, s.best.bound(), |word| {
+        let fetch = |word: u32| {
+            if word & LEAF == 0 {
+                prefetch::<4, _>(&w.nodes, word as usize);
+            } else if node::kind(word) == TRIANGLES {
+                prefetch::<6, _>(&w.triangles, node::index(word));
+            } else if node::kind(word) == QUADS {
+                prefetch::<7, _>(&w.quads, node::index(word));
+            }
+        };
+        walk::<N>(&w.nodes, &entry, s.best.bound(), fetch, |word| {
             let index = node::index(word);
             match node::kind(word) {
                 TRIANGLES => {
@@ -92,12 +101,29 @@ mod present {
         let Some(entry) = s.entry else { return };
         let m = s.mesh;
         let (of, df) = (splat(s.ray.origin), splat(s.ray.direction));
-        walk::<N>(&m.nodes, &entry, s.bound, |word| {
+        let fetch = |word: u32| {
+            if word & LEAF == 0 {
+                prefetch::<4, _>(&m.nodes, word as usize);
+            } else {
+                prefetch::<5, _>(&m.trios, node::index(word));
+            }
+        };
+        walk::<N>(&m.nodes, &entry, s.bound, fetch, |word| {
             let index = node::index(word);
             let mask = trios(&m.trios[index], of, df);
             s.take(index, mask);
             s.reach(&entry)
         });
+    }
+
+    /// Asks for the first `LINES` cache lines of an element.
+    #[inline]
+    fn prefetch<const LINES: usize, T>(list: &[T], index: usize) {
+        let start = list.as_ptr().wrapping_add(index).cast::<i8>();
+        for line in 0..LINES {
+            // SAFETY: a prefetch is a hint and faults on no address.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(64 * line)) };
+        }
     }
 
     #[inline]
@@ -207,7 +233,13 @@ mod present {
     /// The vector twin of [`crate::walk::walk`].
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    fn walk<const N: usize>(nodes: &[Node], e: &Entry, bound: f64, mut leaf: impl FnMut(u32) -> f32) {
+    fn walk<const N: usize>(
+        nodes: &[Node],
+        e: &Entry,
+        bound: f64,
+        fetch: impl Fn(u32),
+        mut leaf: impl FnMut(u32) -> f32,
+    ) {
         let set = |v: &[f32; 3]| [_mm256_set1_ps(v[0]), _mm256_set1_ps(v[1]), _mm256_set1_ps(v[2])];
         let (inverse, near, far) = (set(&e.inverse), set(&e.near), set(&e.far));
         let array = e.array;
@@ -242,6 +274,7 @@ mod present {
                     let mut next = || {
                         let i = hits.trailing_zeros() as usize & 7;
                         hits &= hits - 1;
+                        fetch(node.child[i]);
                         ((node.child[i], distance[i]), hits != 0)
                     };
                     let (first, more) = next();

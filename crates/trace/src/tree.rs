@@ -78,11 +78,11 @@ impl Input<'_> {
 
 /// Builds the tree over `boxes`, of which the first `counts[0]` are triangles, the next `counts[1]` quadrilaterals,
 /// the rest items.
-pub(crate) fn build(boxes: &[Box32], counts: [usize; 2]) -> Result<Tree, BuildError> {
+pub(crate) fn build(boxes: Vec<Box32>, counts: [usize; 2]) -> Result<Tree, BuildError> {
     if boxes.len() >= MOST_LEAVES {
         return Err(BuildError::TooManySurfaces { limit: MOST_LEAVES });
     }
-    let input = Input { boxes, counts };
+    let input = Input { boxes: &boxes, counts };
     let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
     let mut part = Part::default();
     let root = (!order.is_empty()).then(|| {
@@ -90,6 +90,7 @@ pub(crate) fn build(boxes: &[Box32], counts: [usize; 2]) -> Result<Tree, BuildEr
         part.finish(&under)
     });
     drop(order);
+    drop(boxes);
     let Collapse { nodes, depth, blocks, .. } = Collapse::run(part, root);
     Ok(Tree { nodes, depth, blocks, counts })
 }
