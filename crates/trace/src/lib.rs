@@ -7,7 +7,7 @@
 //! | module | what it does |
 //! |---|---|
 //! | `ray` | questions and answers |
-//! | `polygon`, `facet`, `quadric`, `mesh` | hit tests |
+//! | `polygon`, `facet`, `quadric`, `trio`, `mesh` | hit tests |
 //! | `best` | which of several hits counts |
 //! | `bounds`, `frame`, `split`, `tree`, `collapse`, `node` | building |
 //! | `walk`, `simd`, `search` | walking |
@@ -29,6 +29,7 @@ mod search;
 mod simd;
 mod split;
 mod tree;
+mod trio;
 mod walk;
 mod world;
 

@@ -1,19 +1,16 @@
 //! Triangle meshes: shared by every primitive that places them, traced in their own coordinates.
 //!
-//! A triangle is hit if the volumes spanned by the ray and its three edges have one sign. The volume of a shared edge is
-//! the same number for both neighbours but for its sign, and a volume of exactly zero counts as negative for the
-//! direction from the lower to the higher vertex number; so a ray through an edge hits one of the two, never none or
-//! both.
+//! Triangles are tested by [`crate::trio`], four at a time, without cracks.
 
 use crate::BuildError;
 use crate::bounds::{self, Box32};
-use crate::facet::LANES;
 use crate::frame::Frame;
 use crate::node::{self, Node};
 use crate::ray::{Hit, Rank, Ray};
 use crate::search::{Aim, Found};
 use crate::simd::Vector;
 use crate::tree;
+use crate::trio::{Shear, Trios};
 use crate::walk::{DEEP_STACK, Entry, STACK, stack_needed, walk};
 use ambit_base::{DVec3, EPSILON};
 use ambit_scene::{Bounds, ObjectId};
@@ -52,48 +49,6 @@ pub struct Mesh {
     vector: Option<Vector>,
 }
 
-/// Four triangles, component by component.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub(crate) struct Trios {
-    /// By corner, axis and lane.
-    pub(crate) corners: [[[f64; LANES]; 3]; 3],
-    pub(crate) triangle: [u32; LANES],
-    /// By edge: lanes in which it runs from the higher to the lower vertex number.
-    pub(crate) reversed: [u8; 3],
-    /// Lanes in use.
-    used: u8,
-}
-
-impl Trios {
-    fn corner(&self, k: usize, lane: usize) -> DVec3 {
-        DVec3::new(self.corners[k][0][lane], self.corners[k][1][lane], self.corners[k][2][lane])
-    }
-
-    /// The volumes of the three edges (0→1, 1→2, 2→0) with the ray.
-    fn volumes(&self, lane: usize, o: DVec3, d: DVec3) -> [f64; 3] {
-        let v = [0, 1, 2].map(|k| self.corner(k, lane) - o);
-        [0, 1, 2].map(|k| {
-            let (p, q) = (v[k], v[(k + 1) % 3]);
-            let cross = [p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x];
-            d.x * cross[0] + d.y * cross[1] + d.z * cross[2]
-        })
-    }
-
-    /// Lanes whose triangle the line passes through.
-    pub(crate) fn test(&self, o: DVec3, d: DVec3) -> u32 {
-        let mut mask = 0;
-        for lane in 0..LANES {
-            let v = self.volumes(lane, o, d);
-            let positive = |k: usize| v[k] > 0.0 || (v[k] == 0.0 && self.reversed[k] >> lane & 1 == 1);
-            let all = positive(0) && positive(1) && positive(2);
-            let none = !positive(0) && !positive(1) && !positive(2);
-            mask |= u32::from(all || none) << lane;
-        }
-        mask
-    }
-}
-
 impl Mesh {
     /// Builds the tree over a mesh.
     ///
@@ -108,7 +63,7 @@ impl Mesh {
         let frame = Frame::around(exact());
         let boxes: Vec<Box32> = exact().map(|b| frame.child(b)).collect();
         let tree = tree::build(boxes, [geometry.triangles.len(), 0])?;
-        let trios = tree.blocks[0].iter().map(|list| pack(list, &geometry.triangles, &vertices)).collect();
+        let trios = tree.blocks[0].iter().map(|list| Trios::pack(list, &geometry.triangles, &vertices)).collect();
         let shaded = geometry.normals.len() + geometry.uvs.len() > 0;
         Ok(Self {
             deep: stack_needed(tree.depth) > STACK,
@@ -162,6 +117,7 @@ impl Mesh {
         let mut s = MeshSearch {
             mesh: self,
             ray: *ray,
+            shear: Shear::new(ray.origin, ray.direction),
             entry: Entry::new(&self.bounds, self.centre, ray),
             bound: aim.bound.min(ray.limit.next_down()),
             found: None,
@@ -185,11 +141,8 @@ impl Mesh {
         let d = ray.direction;
         let triangle = block.triangle[lane];
         let rank = self.rank(triangle);
-        let normal = normal(block, lane).normalize_or_zero();
-        let v = block.volumes(lane, ray.origin, d);
-        let sum = v[0] + v[1] + v[2];
-        // The edge opposite a corner is the one after the next.
-        let weights = [v[1] / sum, v[2] / sum, v[0] / sum];
+        let normal = block.normal(lane).normalize_or_zero();
+        let weights = block.weights(&Shear::new(ray.origin, d), lane);
         let mut hit = Hit {
             distance,
             object: ObjectId::MAX,
@@ -243,31 +196,11 @@ fn check(g: &MeshGeometry) -> Result<(), BuildError> {
     Ok(())
 }
 
-fn pack(list: &[u32; LANES], triangles: &[[u32; 3]], vertices: &[DVec3]) -> Trios {
-    let mut out = Trios { corners: [[[0.0; LANES]; 3]; 3], triangle: [u32::MAX; LANES], reversed: [0; 3], used: 0 };
-    for (lane, &number) in list.iter().enumerate().filter(|(_, t)| **t != u32::MAX) {
-        let t = triangles[number as usize];
-        for k in 0..3 {
-            for (axis, slot) in out.corners[k].iter_mut().enumerate() {
-                slot[lane] = vertices[t[k] as usize][axis];
-            }
-            out.reversed[k] |= u8::from(t[k] > t[(k + 1) % 3]) << lane;
-        }
-        out.triangle[lane] = number;
-        out.used |= 1 << lane;
-    }
-    out
-}
-
-fn normal(block: &Trios, lane: usize) -> DVec3 {
-    let a = block.corner(0, lane);
-    (block.corner(1, lane) - a).cross(block.corner(2, lane) - a)
-}
-
 /// The state of a search through a mesh.
 pub(crate) struct MeshSearch<'m> {
     pub(crate) mesh: &'m Mesh,
     pub(crate) ray: Ray,
+    pub(crate) shear: Shear,
     pub(crate) entry: Option<Entry>,
     /// Distance of the nearest triangle so far, or what limits it.
     pub(crate) bound: f64,
@@ -282,7 +215,7 @@ impl MeshSearch<'_> {
         let m = self.mesh;
         walk::<N>(&m.nodes, &entry, self.bound, |word| {
             let index = node::index(word);
-            let mask = m.trios[index].test(self.ray.origin, self.ray.direction);
+            let mask = m.trios[index].test(&self.shear);
             self.take(index, mask);
             self.reach(&entry)
         });
@@ -292,20 +225,22 @@ impl MeshSearch<'_> {
         if self.blocked { -1.0 } else { entry.reach(self.bound) }
     }
 
-    /// Looks closer at the lanes of a block whose triangles the line passes through.
+    /// Looks closer at the lanes of a block that the line may pass through.
     #[inline]
     pub(crate) fn take(&mut self, index: usize, mask: u32) {
-        let mut mask = mask & u32::from(self.mesh.trios[index].used);
+        let mut mask = mask & u32::from(self.mesh.trios[index].used());
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize & 3;
             mask &= mask - 1;
-            self.consider(index, lane);
+            if self.mesh.trios[index].passes(&self.shear, lane) {
+                self.consider(index, lane);
+            }
         }
     }
 
     fn consider(&mut self, index: usize, lane: usize) {
         let block = &self.mesh.trios[index];
-        let n = normal(block, lane);
+        let n = block.normal(lane);
         let t = n.dot(block.corner(0, lane) - self.ray.origin) / n.dot(self.ray.direction);
         if !(t > EPSILON && t <= self.bound && t.is_finite()) {
             return;

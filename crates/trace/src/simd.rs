@@ -29,9 +29,10 @@ mod absent {
 mod present {
     use super::Vector;
     use crate::facet::{Facets, LANES, Lanes};
-    use crate::mesh::{MeshSearch, Trios};
+    use crate::mesh::MeshSearch;
     use crate::node::{self, LEAF, Node, QUADS, TRIANGLES};
     use crate::search::Search;
+    use crate::trio::{Shear, Trios, UNSURE};
     use crate::walk::{DEEP_STACK, Entry, STACK};
     use ambit_base::{DVec3, EPSILON};
     #[allow(clippy::wildcard_imports)]
@@ -100,7 +101,6 @@ mod present {
     fn mesh<const N: usize>(s: &mut MeshSearch<'_>) {
         let Some(entry) = s.entry else { return };
         let m = s.mesh;
-        let (of, df) = (splat(s.ray.origin), splat(s.ray.direction));
         let fetch = |word: u32| {
             if word & LEAF == 0 {
                 prefetch::<4, _>(&m.nodes, word as usize);
@@ -110,7 +110,7 @@ mod present {
         };
         walk::<N>(&m.nodes, &entry, s.bound, fetch, |word| {
             let index = node::index(word);
-            let mask = trios(&m.trios[index], of, df);
+            let mask = trios(&m.trios[index], &s.shear);
             s.take(index, mask);
             s.reach(&entry)
         });
@@ -209,25 +209,31 @@ mod present {
     /// The vector twin of [`Trios::test`].
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn trios(b: &Trios, o: [Four; 3], d: [Four; 3]) -> u32 {
-        let corner = |k: usize| {
-            let v = &b.corners[k];
-            [_mm256_sub_pd(load(&v[0]), o[0]), _mm256_sub_pd(load(&v[1]), o[1]), _mm256_sub_pd(load(&v[2]), o[2])]
+    fn trios(b: &Trios, s: &Shear) -> u32 {
+        let [i, j, k] = s.axes;
+        let o = s.origin;
+        let (oi, oj, ok) = (_mm256_set1_pd(o[i]), _mm256_set1_pd(o[j]), _mm256_set1_pd(o[k]));
+        let (si, sj) = (_mm256_set1_pd(s.slope[0]), _mm256_set1_pd(s.slope[1]));
+        let corner = |c: usize| {
+            let v = &b.corners[c];
+            let height = _mm256_sub_pd(load(&v[k]), ok);
+            let x = _mm256_sub_pd(_mm256_sub_pd(load(&v[i]), oi), _mm256_mul_pd(si, height));
+            let y = _mm256_sub_pd(_mm256_sub_pd(load(&v[j]), oj), _mm256_mul_pd(sj, height));
+            (x, y)
         };
         let v = [corner(0), corner(1), corner(2)];
-        let zero = _mm256_setzero_pd();
-        let (mut all, mut any) = (0xf, 0);
-        for k in 0..3 {
-            let (p, q) = (v[k], v[(k + 1) % 3]);
-            let cross = [minor(p[1], q[2], p[2], q[1]), minor(p[2], q[0], p[0], q[2]), minor(p[0], q[1], p[1], q[0])];
-            let volume = dot(d, cross);
-            let above = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(volume, zero)) as u32;
-            let level = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_EQ_OQ>(volume, zero)) as u32;
-            let positive = above | (level & u32::from(b.reversed[k]));
-            all &= positive;
-            any |= positive;
+        let sign = _mm256_set1_pd(-0.0);
+        let (mut positive, mut negative) = (_mm256_setzero_pd(), _mm256_setzero_pd());
+        for c in 0..3 {
+            let (a, b) = (v[c], v[(c + 1) % 3]);
+            let (p, q) = (_mm256_mul_pd(a.0, b.1), _mm256_mul_pd(a.1, b.0));
+            let size = _mm256_add_pd(_mm256_andnot_pd(sign, p), _mm256_andnot_pd(sign, q));
+            let unsure = _mm256_mul_pd(_mm256_set1_pd(UNSURE), size);
+            let d = _mm256_sub_pd(p, q);
+            positive = _mm256_or_pd(positive, _mm256_cmp_pd::<_CMP_GT_OQ>(d, unsure));
+            negative = _mm256_or_pd(negative, _mm256_cmp_pd::<_CMP_GT_OQ>(_mm256_xor_pd(d, sign), unsure));
         }
-        (all | !any) & 0xf
+        !_mm256_movemask_pd(_mm256_and_pd(positive, negative)) as u32 & 0xf
     }
 
     /// The vector twin of [`crate::walk::walk`].
