@@ -66,12 +66,31 @@ impl<T: Copy> Chunks<T> {
         }
     }
 
-    fn get(&self, i: u32) -> &T {
-        &self.full[i as usize / CHUNK][i as usize % CHUNK]
+    /// Ways to fetch each value once, giving memory back as chunks are used up.
+    fn drain(self) -> Drain<T> {
+        Drain { left: self.full.iter().map(Vec::len).collect(), full: self.full }
     }
 
     fn iter(&self) -> impl Iterator<Item = &T> {
         self.full.iter().flatten()
+    }
+}
+
+/// See [`Chunks::drain`].
+struct Drain<T> {
+    full: Vec<Vec<T>>,
+    left: Vec<usize>,
+}
+
+impl<T: Copy> Drain<T> {
+    fn fetch(&mut self, i: u32) -> T {
+        let chunk = i as usize / CHUNK;
+        let value = self.full[chunk][i as usize % CHUNK];
+        self.left[chunk] -= 1;
+        if self.left[chunk] == 0 {
+            self.full[chunk] = Vec::new();
+        }
+        value
     }
 }
 
@@ -219,7 +238,7 @@ impl WorldBuilder {
         Ok(self.assemble(tree, frame))
     }
 
-    fn assemble(mut self, mut tree: Tree, frame: Frame) -> World {
+    fn assemble(self, mut tree: Tree, frame: Frame) -> World {
         let (first, span) = self.objects();
         let mut rank_of = vec![u32::MAX; span];
         let mut place_of = vec![NOWHERE; span];
@@ -227,11 +246,9 @@ impl WorldBuilder {
             rank_of[(object - first) as usize] = rank;
             place_of[(object - first) as usize] = place;
         };
-        let triangles = pack(TRIANGLES, &mut tree.blocks[0], &self.triangles, 0, &mut record);
-        self.triangles = Chunks::default();
+        let triangles = pack(TRIANGLES, &mut tree.blocks[0], self.triangles, 0, &mut record);
         let from = tree.counts[0] as u32;
-        let quads = pack(QUADS, &mut tree.blocks[1], &self.quads, from, &mut record);
-        self.quads = Chunks::default();
+        let quads = pack(QUADS, &mut tree.blocks[1], self.quads, from, &mut record);
         let mut placed = Vec::new();
         for (i, (item, _, rank)) in self.items.iter().enumerate() {
             record(item.object(), *rank, node::place(node::leaf(ITEMS, i as u32), 0));
@@ -275,16 +292,17 @@ impl WorldBuilder {
 fn pack<const K: usize>(
     kind: u32,
     lists: &mut Vec<[u32; LANES]>,
-    kept: &Chunks<Kept<K>>,
+    kept: Chunks<Kept<K>>,
     from: u32,
     record: &mut impl FnMut(ObjectId, u32, u32),
 ) -> Vec<Facets<K>> {
     let lists = std::mem::take(lists);
+    let mut kept = kept.drain();
     let mut blocks = Vec::with_capacity(lists.len());
     for (index, list) in lists.iter().enumerate() {
         let mut block = Facets::EMPTY;
         for (lane, &surface) in list.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
-            let k = kept.get(surface - from);
+            let k = kept.fetch(surface - from);
             block.set(lane, &k.facet, k.object);
             record(k.object, k.rank, node::place(node::leaf(kind, index as u32), lane));
         }

@@ -17,7 +17,7 @@ use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use std::ops::Range;
 
 /// Groups of equal boxes that are clustered at a time.
-const PORTION: usize = 1 << 17;
+const PORTION: usize = 1 << 15;
 
 /// Reinsertion candidates as a share of the nodes.
 const REINSERTION: f32 = 0.1;
