@@ -4,7 +4,7 @@
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-/// From [0,1]² to the unit disk, concentrically.
+/// From the unit square to the unit disk, concentrically.
 #[inline]
 pub fn square_to_disk(x: f64, y: f64) -> [f64; 2] {
     let (a, b) = (2.0 * x - 1.0, 2.0 * y - 1.0);
@@ -38,7 +38,7 @@ pub fn disk_to_square(p: f64, q: f64) -> [f64; 2] {
     [(a + 1.0) * 0.5, (b + 1.0) * 0.5]
 }
 
-/// From [0,1]² to directions with cosine density about +z.
+/// From the unit square to directions with cosine density about +z.
 #[inline]
 pub fn cosine_hemisphere(x: f64, y: f64) -> DVec3 {
     let [p, q] = square_to_disk(x, y);
