@@ -56,16 +56,21 @@ impl Kinds {
     }
 }
 
+/// A set of sources that mists name, by their numbers among these.
+pub(crate) type SourceSet = u64;
+
 /// What fills space along a ray: extinction and albedo per channel, eccentricity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Interior {
     pub(crate) extinction: Rgb,
     pub(crate) albedo: Rgb,
     pub(crate) eccentricity: f32,
+    /// Sources whose scattered light counts.
+    pub(crate) sources: SourceSet,
 }
 
 impl Interior {
-    pub(crate) const VACUUM: Self = Self { extinction: Rgb::ZERO, albedo: Rgb::ZERO, eccentricity: 0.0 };
+    pub(crate) const VACUUM: Self = Self { extinction: Rgb::ZERO, albedo: Rgb::ZERO, eccentricity: 0.0, sources: 0 };
 }
 
 /// Extinction times length below which nothing happens, and above which nothing is left.

@@ -167,7 +167,7 @@ impl Tracer<'_> {
     /// The medium outside every mist and dielectric.
     pub(crate) fn global_interior(&self) -> Interior {
         let m = &self.options.medium;
-        Interior { extinction: m.extinction, albedo: m.albedo, eccentricity: m.eccentricity as f32 }
+        Interior { extinction: m.extinction, albedo: m.albedo, eccentricity: m.eccentricity as f32, sources: 0 }
     }
 
     fn stream(&self, index: u32) -> Stream {

@@ -29,11 +29,12 @@ impl Walk<'_> {
             let (node, definition, next) = scene.modifiers.get(id);
             match node {
                 Node::Material(material) => {
+                    let bare = finish;
                     if !self.gather(ray, next, &mut finish) {
                         return true;
                     }
                     ray.material = definition;
-                    return self.material(ray, material, finish);
+                    return self.material(ray, material, finish, &bare);
                 }
                 Node::Mixture(mixture) => {
                     if let Some(shaded) = self.mix(ray, mixture, next, &mut finish) {

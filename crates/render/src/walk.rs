@@ -74,6 +74,9 @@ impl Walk<'_> {
         if !ray.is_shadow() && interior.albedo.max_element() > EPSILON as f32 {
             let lost = Rgb::ONE - transmittance(interior.extinction, ray.distance);
             ray.value += interior.albedo * self.tracer.options.ambient.value * lost;
+            if interior.sources != 0 {
+                self.in_scatter(ray);
+            }
         }
     }
 

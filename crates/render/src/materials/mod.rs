@@ -1,17 +1,32 @@
 //! What light does at a surface, one material a file.
 
+mod anisotropic;
+mod ashikhmin;
+mod brtd;
 mod dielectric;
+mod function;
 mod glass;
 mod light;
 mod mirror;
+mod mist;
 mod normal;
+mod prism;
+mod program;
 mod rough;
+mod wgmd;
 
+pub(crate) use anisotropic::Anisotropic;
+pub(crate) use ashikhmin::Ashikhmin;
+pub(crate) use brtd::Brtd;
 pub(crate) use dielectric::Dielectric;
+pub(crate) use function::FunctionMaterial;
 pub(crate) use glass::{Glass, WINDOW_INDEX};
 pub(crate) use light::Light;
 pub(crate) use mirror::{Alternate, Mirror};
+pub(crate) use mist::Mist;
 pub(crate) use normal::{Normal, NormalKind};
+pub(crate) use prism::Prism;
+pub(crate) use wgmd::Wgmd;
 
 use crate::antimatter::Antimatter;
 use crate::ray::{Kinds, Ray};
@@ -24,6 +39,16 @@ use ambit_trace::Opacity;
 pub(crate) enum Material {
     /// plastic, metal, trans.
     Normal(Normal),
+    /// plastic2, metal2, trans2.
+    Anisotropic(Box<Anisotropic>),
+    /// ashik2.
+    Ashikhmin(Box<Ashikhmin>),
+    /// plasfunc, metfunc, transfunc, plasdata, metdata, transdata.
+    Function(Box<FunctionMaterial>),
+    Brtd(Box<Brtd>),
+    Wgmd(Box<Wgmd>),
+    Prism(Box<Prism>),
+    Mist(Mist),
     Glass(Glass),
     /// dielectric, interface.
     Dielectric(Dielectric),
@@ -47,8 +72,16 @@ impl Material {
     pub(crate) fn opacity(&self) -> Opacity {
         let transparent = match self {
             Self::Normal(m) => m.kind == NormalKind::Trans,
-            Self::Glass(_) | Self::Dielectric(_) => true,
-            Self::Mirror(_) | Self::Light(_) | Self::Antimatter(_) => false,
+            Self::Anisotropic(m) => m.kind == NormalKind::Trans,
+            Self::Brtd(m) => m.transmits,
+            Self::Wgmd(m) => m.transmits,
+            Self::Glass(_) | Self::Dielectric(_) | Self::Mist(_) => true,
+            Self::Ashikhmin(_)
+            | Self::Function(_)
+            | Self::Mirror(_)
+            | Self::Prism(_)
+            | Self::Light(_)
+            | Self::Antimatter(_) => false,
         };
         if transparent { Opacity::Transparent } else { Opacity::Opaque }
     }
@@ -58,6 +91,9 @@ impl Material {
         match self {
             Self::Normal(m) => m.kind != NormalKind::Trans,
             Self::Light(m) => m.blocks(),
+            Self::Anisotropic(_) | Self::Ashikhmin(_) | Self::Function(_) | Self::Prism(_) => true,
+            Self::Brtd(m) => !m.transmits,
+            Self::Wgmd(m) => !m.transmits,
             _ => false,
         }
     }
@@ -74,8 +110,9 @@ impl Material {
 }
 
 impl Walk<'_> {
-    /// Shades a ray at its hit; false if the material lets it pass unchanged.
-    pub(crate) fn material(&mut self, ray: &mut Ray<'_>, material: &Material, finish: Finish) -> bool {
+    /// Shades a ray at its hit; false if the material lets it pass unchanged. `bare` is what had been gathered before the
+    /// material's own modifiers.
+    pub(crate) fn material(&mut self, ray: &mut Ray<'_>, material: &Material, finish: Finish, bare: &Finish) -> bool {
         if self.tracer.options.irradiance && ray.lineage.within(Kinds::STRAIGHT) && !material.keeps_meaning() {
             if material.opacity() == Opacity::Transparent {
                 return false;
@@ -85,6 +122,13 @@ impl Walk<'_> {
         }
         match material {
             Material::Normal(m) => self.normal(ray, m, finish),
+            Material::Anisotropic(m) => self.anisotropic(ray, m, finish),
+            Material::Ashikhmin(m) => self.ashikhmin(ray, m, finish),
+            Material::Function(m) => self.function_material(ray, m, finish),
+            Material::Brtd(m) => self.brtd(ray, m, finish),
+            Material::Wgmd(m) => self.wgmd(ray, m, finish, bare),
+            Material::Prism(m) => self.prism(ray, m),
+            Material::Mist(m) => self.mist(ray, m, finish),
             Material::Glass(m) => self.glass(ray, m, finish),
             Material::Dielectric(m) => self.dielectric(ray, m, finish),
             Material::Mirror(m) => self.mirror(ray, m, finish),

@@ -1,6 +1,7 @@
 //! plastic, metal and trans: a diffuse part, a Gaussian or ideal specular lobe, and for trans the same two through the
 //! surface. Also the Lambertian stand-in that measures irradiance.
 
+use super::rough::Facets;
 use super::{Facing, Finish, mirror_direction};
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
@@ -28,13 +29,19 @@ pub(crate) struct Normal {
 }
 
 /// Smooth surfaces at least this specular get the Fresnel estimate.
-const FRESNEL_FROM: f64 = 0.017999;
+pub(super) const FRESNEL_FROM: f64 = 0.017999;
 /// Cosines of view angles are no smaller than this in lobes.
-const LEAST_COSINE: f64 = 0.001;
+pub(super) const LEAST_COSINE: f64 = 0.001;
 
 /// Fresnel estimate for an angle of incidence with cosine `c`.
 pub(crate) fn fresnel(c: f64) -> f64 {
     (-5.85 * c).exp() - 0.00202943064
+}
+
+/// The direction of `bent` if that crosses the surface as the view direction `d` does, else `d`.
+pub(super) fn crossing(bent: DVec3, d: DVec3, facing: &Facing) -> DVec3 {
+    let bent = bent.normalize_or(d);
+    if bent.dot(facing.geometric) < 0.0 { bent } else { d }
 }
 
 /// How one hit splits its light.
@@ -130,11 +137,11 @@ impl Walk<'_> {
         let lump_through = !split.smooth && threshold >= split.through_specular - EPSILON;
         if !split.smooth {
             if split.reflected > EPSILON && !lump_reflected {
-                self.sample_reflection(ray, &facing, split.mirror, m.roughness);
+                self.sample_reflection(ray, &facing, split.mirror, &Facets::isotropic(facing.normal, m.roughness));
             }
             if split.through_specular > EPSILON && !lump_through {
                 let k = colour * split.through_specular as f32;
-                self.sample_transmission(ray, &facing, through, k, m.roughness);
+                self.sample_transmission(ray, &facing, through, k, &Facets::isotropic(through, m.roughness));
             }
         }
         let mut near = colour * split.diffuse.max(0.0) as f32;
@@ -154,13 +161,12 @@ impl Walk<'_> {
     }
 
     /// The view direction through a thin textured surface: d − p, if that still crosses it.
-    fn through_direction(&self, ray: &Ray<'_>, facing: &Facing) -> DVec3 {
+    pub(super) fn through_direction(&self, ray: &Ray<'_>, facing: &Facing) -> DVec3 {
         let d = ray.direction;
         if !facing.textured || ray.is_shadow() || ray.is_ambient() || self.is_phong(ray) {
             return d;
         }
-        let bent = (d - facing.tilt).normalize_or(d);
-        if bent.dot(facing.geometric) < 0.0 { bent } else { d }
+        crossing(d - facing.tilt, d, facing)
     }
 
     fn smooth_transmission(&mut self, ray: &mut Ray<'_>, k: Rgb, direction: DVec3, split: &Split) {

@@ -18,8 +18,9 @@ mod spectral_image;
 mod spectrum;
 mod texture;
 
-pub(crate) use compiler::Compiler;
+pub(crate) use compiler::{Compiler, Functions, Recipe};
 pub(crate) use complaints::Complaints;
 pub(crate) use mixture::Mixture;
 pub(crate) use pattern::Pattern;
+pub(crate) use site::fill;
 pub(crate) use texture::Texture;

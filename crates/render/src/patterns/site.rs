@@ -26,7 +26,8 @@ impl Walk<'_> {
     }
 }
 
-fn fill(c: &mut [f64; CHANNELS], wanted: ChannelSet, ray: &Ray<'_>, frame: &Transform) {
+/// Fills the wanted channels of a hit; `frame` carries the function's coordinates to the world.
+pub(crate) fn fill(c: &mut [f64; CHANNELS], wanted: ChannelSet, ray: &Ray<'_>, frame: &Transform) {
     let mut set = |first: Channel, v: DVec3| {
         let i = first as usize;
         c[i..i + 3].copy_from_slice(&v.to_array());

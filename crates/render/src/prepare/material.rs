@@ -3,7 +3,10 @@
 use super::Modifiers;
 use crate::Error;
 use crate::antimatter::Antimatter;
-use crate::materials::{Alternate, Dielectric, Glass, Light, Material, Mirror, Normal, NormalKind, WINDOW_INDEX};
+use crate::materials::{
+    Alternate, Anisotropic, Ashikhmin, Brtd, Dielectric, FunctionMaterial, Glass, Light, Material, Mirror, Mist,
+    Normal, NormalKind, Prism, WINDOW_INDEX, Wgmd,
+};
 use crate::patterns::Compiler;
 use crate::sources::Spot;
 use ambit_base::{DVec3, EPSILON, Rgb};
@@ -65,6 +68,17 @@ pub(crate) fn compile_material(
             Material::Mirror(Mirror { colour: colour(r), alternate: alternate(scene, id) })
         }
         Kind::Light | Kind::Illum | Kind::Glow | Kind::Spotlight => light(scene, id)?,
+        Kind::Plastic2 | Kind::Metal2 | Kind::Trans2 => {
+            Material::Anisotropic(Box::new(Anisotropic::compile(scene, id, compiler)?))
+        }
+        Kind::Ashik2 => Material::Ashikhmin(Box::new(Ashikhmin::compile(scene, id, compiler)?)),
+        Kind::PlasFunc | Kind::MetFunc | Kind::TransFunc | Kind::PlasData | Kind::MetData | Kind::TransData => {
+            Material::Function(Box::new(FunctionMaterial::compile(scene, id, compiler)?))
+        }
+        Kind::BrtdFunc => Material::Brtd(Box::new(Brtd::compile(scene, id, compiler)?)),
+        Kind::WgmdFunc => Material::Wgmd(Box::new(Wgmd::compile(scene, id, compiler)?)),
+        Kind::Prism1 | Kind::Prism2 => Material::Prism(Box::new(Prism::compile(scene, id, compiler)?)),
+        Kind::Mist => Material::Mist(Mist::compile(scene, id)?),
         Kind::Antimatter => antimatter(scene, id, compiler)?,
         _ => return Err(Error::unsupported(scene, id)),
     })

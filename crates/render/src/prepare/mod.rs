@@ -26,8 +26,10 @@ pub(crate) struct Prepared {
     pub(crate) sources: Vec<Source>,
     /// Sources at infinity, in scene order.
     pub(crate) distant: Vec<SourceId>,
-    /// Mirrors that relay light.
+    /// Mirrors and prisms that relay light.
     pub(crate) relays: Vec<Relay>,
+    /// Sources that mists name.
+    pub(crate) scatterers: Vec<SourceId>,
     /// Objects of the main scene.
     pub(crate) top_level: std::ops::Range<ObjectId>,
     pub(crate) clip_sets: crate::antimatter::ClipSets,
@@ -56,6 +58,7 @@ impl Prepared {
             distant: distant(&sources),
             sources,
             relays: Vec::new(),
+            scatterers: Vec::new(),
             top_level,
             clip_sets: crate::antimatter::ClipSets::default(),
             left_out,
@@ -64,6 +67,7 @@ impl Prepared {
             cube,
         };
         crate::sources::add_virtual_sources(&mut prepared, options, environment);
+        crate::sources::name_scatterers(&mut prepared, environment);
         Ok(prepared)
     }
 

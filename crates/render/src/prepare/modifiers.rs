@@ -147,6 +147,23 @@ impl Modifiers {
         (&self.nodes[link.node as usize], link.definition, link.next)
     }
 
+    /// The material that the primitive `id` was compiled to.
+    pub(crate) fn material_mut(&mut self, id: ObjectId) -> Option<&mut Material> {
+        match self.nodes.get_mut(self.links.get(id as usize)?.node as usize)? {
+            Node::Material(m) => Some(m),
+            _ => None,
+        }
+    }
+
+    /// Makes a modifier end the calculation of the first ray that needs it.
+    pub(crate) fn disable(&mut self, id: ObjectId, error: Error) {
+        if let Some(link) = self.links.get(id as usize)
+            && let Some(node) = self.nodes.get_mut(link.node as usize)
+        {
+            *node = Node::Unusable(error);
+        }
+    }
+
     /// The first material up the chain from `id`, aliases followed: its node and primitive.
     pub(crate) fn material(&self, mut id: ObjectId) -> Option<(&Material, ObjectId)> {
         while id != VOID {

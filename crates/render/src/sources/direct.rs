@@ -12,21 +12,21 @@ use ambit_trace::Shadow;
 /// A sample that could light the point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {
-    source: SourceId,
-    direction: DVec3,
+    pub(super) source: SourceId,
+    pub(super) direction: DVec3,
     /// What the surface makes of radiance from there.
-    coefficient: Rgb,
+    pub(super) coefficient: Rgb,
     /// `coefficient` × emitted radiance, unobstructed.
-    potential: Rgb,
-    brightness: f32,
+    pub(super) potential: Rgb,
+    pub(super) brightness: f32,
 }
 
 /// A sample of one part of a source.
 #[derive(Clone, Copy, Debug)]
-struct Sample {
-    direction: DVec3,
+pub(super) struct Sample {
+    pub(super) direction: DVec3,
     distance: f64,
-    solid_angle: f64,
+    pub(super) solid_angle: f64,
 }
 
 /// Above this jitter a round source that is not divided is sampled all over.
@@ -36,6 +36,11 @@ impl Walk<'_> {
     /// Adds to `ray.value` what all sources send to its hit point. `coefficient` gives the surface's response to a
     /// unit direction and a solid angle: BSDF × cosine × solid angle.
     pub(crate) fn direct(&mut self, ray: &mut Ray<'_>, coefficient: impl Fn(DVec3, f64) -> Rgb) {
+        self.direct_with(ray, |_, l, omega| coefficient(l, omega));
+    }
+
+    /// As [`Walk::direct`], for responses that take a walk to be found.
+    pub(crate) fn direct_with(&mut self, ray: &mut Ray<'_>, mut coefficient: impl FnMut(&mut Self, DVec3, f64) -> Rgb) {
         if self.tracer.scene.sources.is_empty() {
             return;
         }
@@ -58,7 +63,7 @@ impl Walk<'_> {
             for (i, part) in divided.iter().enumerate() {
                 let stream = ray.stream.child(mix(id as u64, 0x5000 + i as u64));
                 let Some(sample) = self.sample(source, ray.point, part, bend, stream) else { continue };
-                let k = coefficient(sample.direction, sample.solid_angle);
+                let k = coefficient(self, sample.direction, sample.solid_angle);
                 if k.max_element() <= 0.0 {
                     continue;
                 }
@@ -82,7 +87,14 @@ impl Walk<'_> {
     }
 
     /// One sample of a part, or None where the source does not face, reach or aim at the point.
-    fn sample(&self, source: &Source, point: DVec3, part: &Part, bend: bool, stream: Stream) -> Option<Sample> {
+    pub(super) fn sample(
+        &self,
+        source: &Source,
+        point: DVec3,
+        part: &Part,
+        bend: bool,
+        stream: Stream,
+    ) -> Option<Sample> {
         let jitter = self.tracer.options.direct.jitter;
         let mut at = part.centre;
         if jitter > EPSILON {
@@ -128,7 +140,7 @@ impl Walk<'_> {
     }
 
     /// Radiance of a source towards the ray's point along a sample, nothing in between but the medium.
-    fn emitted(&mut self, ray: &Ray<'_>, id: SourceId, sample: Sample, bend: bool) -> Rgb {
+    pub(super) fn emitted(&mut self, ray: &Ray<'_>, id: SourceId, sample: Sample, bend: bool) -> Rgb {
         let source = &self.tracer.scene.sources[id as usize];
         let emission = if source.image.is_some() {
             self.relayed(ray, id, sample.direction)
@@ -201,7 +213,7 @@ impl Walk<'_> {
     }
 
     /// Light that arrives from a candidate, or None if it is blocked.
-    fn shadow(&mut self, ray: &Ray<'_>, candidate: &Candidate) -> Option<Rgb> {
+    pub(super) fn shadow(&mut self, ray: &Ray<'_>, candidate: &Candidate) -> Option<Rgb> {
         let tracer = self.tracer;
         let source = &tracer.scene.sources[candidate.source as usize];
         let direction = candidate.direction;

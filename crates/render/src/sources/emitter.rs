@@ -65,7 +65,7 @@ pub(crate) struct Source {
     pub(crate) spot: Option<Spot>,
     /// False: seen, but not sampled.
     pub(crate) sampled: bool,
-    /// Set for the image of another source in a mirror.
+    /// Set for the image of another source in a mirror or prism.
     pub(crate) image: Option<Image>,
     /// Where an image's light can get to.
     pub(crate) restrictions: Vec<Restriction>,
@@ -78,6 +78,10 @@ pub(crate) struct Image {
     pub(crate) of: SourceId,
     /// Index of the relay that forms it.
     pub(crate) relay: u32,
+    /// Which of the relay's ways the light takes.
+    pub(crate) branch: u8,
+    /// The image lies on the side of the relay that its normal points to.
+    pub(crate) in_front: bool,
 }
 
 /// Where the light of an image can get to at all.

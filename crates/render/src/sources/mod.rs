@@ -5,6 +5,7 @@ mod distant;
 mod emitter;
 mod list;
 mod partition;
+mod scatter;
 mod tally;
 mod virtual_sources;
 
@@ -13,6 +14,7 @@ pub(crate) use distant::sensor;
 pub(crate) use emitter::{Emitter, Source, Spot};
 pub(crate) use list::find_sources;
 pub(crate) use partition::Part;
+pub(crate) use scatter::name_scatterers;
 pub(crate) use tally::{Count, Tally};
 pub(crate) use virtual_sources::{Relay, add_virtual_sources};
 
