@@ -22,6 +22,10 @@ use ambit_base::{Colour, Rgb, Stream, hash_bits, hash_point};
 
 /// Misses that are resolved together; later windows profit from the records of earlier ones.
 const WINDOW: usize = 4096;
+/// Picks of the first round; later rounds have twice as many up to [`CAP`]. Where the records of one level are few,
+/// those of a round see only the few below them and share their noise: records that come one after the other also see
+/// each other.
+const FIRST: usize = 2;
 /// Samples one task traces.
 const CHUNK: usize = 32;
 /// Look-ups below which a parallel step costs more than it saves.
@@ -103,9 +107,11 @@ impl Cache {
         let mut open: Vec<usize> = (0..queries.len()).collect();
         let mut apart = limits.accuracy * limits.max_radius;
         let least = 0.5 * limits.accuracy * limits.min_radius;
+        let mut most = FIRST;
         while !open.is_empty() {
             self.statistics.rounds += 1;
-            let Selection { picks, maximal, blocked } = select(&limits, queries, &open, &exempt, apart);
+            let Selection { picks, maximal, blocked } = select(&limits, queries, &open, &exempt, apart, most);
+            most = (2 * most).min(CAP);
             let outcomes = self.hemispheres(sampler, level, queries, &picks);
             let delta = self.publish(sampler, queries, &picks, &outcomes, &mut values);
             let mut wasted = [false; CAP];

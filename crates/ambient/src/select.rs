@@ -24,12 +24,13 @@ pub(crate) fn select<O>(
     open: &[usize],
     exempt: &[bool],
     apart: f64,
+    most: usize,
 ) -> Selection {
     let mut picks: Vec<usize> = Vec::with_capacity(CAP);
     let mut weights = Vec::with_capacity(CAP);
     let mut blocked = Vec::new();
     for &at in open {
-        if picks.len() == CAP {
+        if picks.len() == most {
             return Selection { picks, maximal: false, blocked };
         }
         let q = &queries[at];
