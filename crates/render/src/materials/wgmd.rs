@@ -263,6 +263,8 @@ impl Walk<'_> {
         if !facing.textured || ray.is_shadow() || ray.is_ambient() || self.is_phong(ray) {
             return d;
         }
-        crossing(d - facing.normal + facing.geometric, d, facing)
+        // Radiance bends by the normals as the surface has them, also where it is seen from behind.
+        let bend = facing.geometric - facing.normal;
+        crossing(if ray.cosine() < 0.0 { d - bend } else { d + bend }, d, facing)
     }
 }
