@@ -9,6 +9,8 @@ pub(crate) struct Work {
     pub(crate) rays: u64,
     pub(crate) candidates: Vec<Candidate>,
     pub(crate) parts: Vec<Part>,
+    /// Sources whose samples a known obstacle blocks at the hit being lit.
+    pub(crate) known_blocked: Vec<SourceId>,
     pub(crate) cal: ambit_cal::Scratch,
     /// Shadow tests since the last batch.
     pub(crate) tally: Tally,
@@ -22,6 +24,7 @@ impl Work {
             rays: 0,
             candidates: Vec::new(),
             parts: Vec::new(),
+            known_blocked: Vec::new(),
             cal: ambit_cal::Scratch::default(),
             tally: Tally::zero(sources),
             here: Tally::zero(sources).counts,

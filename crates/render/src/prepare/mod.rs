@@ -12,7 +12,7 @@ pub(crate) use material::compile_material;
 pub(crate) use modifiers::{Modifiers, Node};
 
 use crate::patterns::Complaints;
-use crate::sources::{Emitter, Relay, Source, SourceId};
+use crate::sources::{Emitter, Obstacles, Relay, Source, SourceId};
 use crate::{Error, Options, Selection};
 use ambit_scene::{ObjectId, Scene, VOID};
 use ambit_trace::World;
@@ -24,6 +24,8 @@ pub(crate) struct Prepared {
     pub(crate) modifiers: Modifiers,
     pub(crate) world: World,
     pub(crate) sources: Vec<Source>,
+    /// What stands in the sources' light.
+    pub(crate) obstacles: Obstacles,
     /// Sources at infinity, in scene order.
     pub(crate) distant: Vec<SourceId>,
     /// Mirrors and prisms that relay light.
@@ -48,6 +50,7 @@ impl Prepared {
         let modifiers = Modifiers::compile(&scene, environment)?;
         let sources = crate::sources::find_sources(&scene, top_level.clone(), &modifiers, environment)?;
         let world = world::build(&scene, top_level.clone(), &volumes, &modifiers, environment)?;
+        let obstacles = Obstacles::find(&sources, &world, &modifiers);
         let left_out = left_out(&scene, &options.ambient.selection);
         scene.shrink_to_fit();
         let complaints = Complaints::new(scene.len());
@@ -55,6 +58,7 @@ impl Prepared {
             objects: scene,
             modifiers,
             world,
+            obstacles,
             distant: distant(&sources),
             sources,
             relays: Vec::new(),

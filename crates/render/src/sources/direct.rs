@@ -59,12 +59,20 @@ impl Walk<'_> {
                 continue;
             }
             parts(source, ray.point, ratio, &mut divided);
+            let known = divided.len() == 1;
             let bend = divided.len() > 1 || options.direct.jitter > BENDING_JITTER;
             for (i, part) in divided.iter().enumerate() {
                 let stream = ray.stream.child(mix(id as u64, 0x5000 + i as u64));
                 let Some(sample) = self.sample(source, ray.point, part, bend, stream) else { continue };
                 let k = coefficient(self, sample.direction, sample.solid_angle);
                 if k.max_element() <= 0.0 {
+                    continue;
+                }
+                if known
+                    && scene.obstacles.block(id, source, &scene.world, ray.point, sample.direction, sample.distance)
+                {
+                    self.work.note_test(id as SourceId, false);
+                    self.work.known_blocked.push(id as SourceId);
                     continue;
                 }
                 let emitted = self.emitted(ray, id as SourceId, sample, bend);
@@ -193,7 +201,9 @@ impl Walk<'_> {
         if tested < count {
             self.estimate_rest(ray, candidates, tested, clear);
         }
-        self.work.settle(candidates[..tested].iter().map(|c| c.source));
+        let mut blocked = std::mem::take(&mut self.work.known_blocked);
+        self.work.settle(candidates[..tested].iter().map(|c| c.source).chain(blocked.drain(..)));
+        self.work.known_blocked = blocked;
     }
 
     /// Adds what the samples from `tested` on should bring, by the record of their sources.

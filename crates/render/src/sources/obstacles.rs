@@ -1,0 +1,184 @@
+//! What is known beforehand to stand in each source's light: for every cell of directions around a local source, and
+//! for every cell across a distant one's beam, the first opaque surface on the way.
+//!
+//! A shadow ray that meets its cell's obstacle needs no search, and the sample is known not to count, which keeps the
+//! estimate for untested sources honest where many sources are blocked. The table is made once and never changes, so
+//! nothing depends on the order of rays. Scenes in which every sample is tested anyway have none.
+
+use super::emitter::{Emitter, Source};
+use crate::prepare::Modifiers;
+use ambit_base::{DVec3, EPSILON, FAR, Frame};
+use ambit_scene::{ObjectId, VOID};
+use ambit_trace::{Ray, World};
+use rayon::prelude::*;
+
+/// Cells along each edge of the cube of directions around a local source.
+const DIRECTIONS: usize = 20;
+/// Cells along each side of a distant source's beam.
+const POSITIONS: usize = 40;
+/// With fewer sources than this all samples are tested always.
+const FROM: usize = 3;
+/// Sources beyond these have no table.
+const MOST: usize = 200;
+
+/// The tables of all sources; empty where a source has none.
+#[derive(Debug, Default)]
+pub(crate) struct Obstacles {
+    tables: Vec<Table>,
+}
+
+#[derive(Debug, Default)]
+struct Table {
+    cells: Vec<ObjectId>,
+    /// The beam of a distant source: axes across it, low corner and width of a cell.
+    beam: Option<Beam>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Beam {
+    frame: Frame,
+    low: [f64; 2],
+    cell: f64,
+}
+
+impl Obstacles {
+    /// Finds the obstacles of `sources` in a world.
+    pub(crate) fn find(sources: &[Source], world: &World, modifiers: &Modifiers) -> Self {
+        if sources.iter().filter(|s| s.sampled).count() < FROM {
+            return Self::default();
+        }
+        let plain = |s: &Source| s.sampled && !s.glow && s.spot.is_none() && s.image.is_none();
+        let table = |s: &Source| if plain(s) { Table::of(s, world, modifiers) } else { Table::default() };
+        Self { tables: sources[..sources.len().min(MOST)].par_iter().map(table).collect() }
+    }
+
+    /// True if the obstacle known for `point` blocks the sample of source `id` in unit direction `l` at `distance`.
+    pub(crate) fn block(
+        &self,
+        id: usize,
+        source: &Source,
+        world: &World,
+        point: DVec3,
+        l: DVec3,
+        distance: f64,
+    ) -> bool {
+        let Some(table) = self.tables.get(id) else { return false };
+        let Some(obstacle) = table.at(source, point) else { return false };
+        let reach = source.intersect(point, l).map_or(distance, |(t, _)| t);
+        world.distance(obstacle, &Ray { origin: point, direction: l, limit: FAR }).is_some_and(|t| t < reach - EPSILON)
+    }
+}
+
+impl Table {
+    fn of(source: &Source, world: &World, modifiers: &Modifiers) -> Self {
+        let first = |mut origin: DVec3, direction: DVec3| {
+            let mut hit = world.nearest(&Ray { origin, direction, limit: FAR })?;
+            // From inside a source the way leads through its own surface.
+            for _ in 0..2 {
+                if hit.object == source.object {
+                    origin += direction * hit.distance;
+                    hit = world.nearest(&Ray { origin, direction, limit: FAR })?;
+                }
+            }
+            // Only what belongs to the main scene and stops every shadow ray is sure to block.
+            let sure = hit.placement.is_none() && !hit.mesh_triangle && modifiers.blocks(hit.modifier);
+            (sure && hit.object != source.object).then_some(hit.object)
+        };
+        let first = |origin: DVec3, direction: DVec3| first(origin, direction).unwrap_or(VOID);
+        if matches!(source.emitter, Emitter::Distant) {
+            let Some(beam) = Beam::across(source.centre, world) else { return Self::default() };
+            let far = source.centre * beam.cell * POSITIONS as f64 * 4.0;
+            let middle = {
+                let b = world.bounds();
+                (b.min + b.max) * 0.5
+            };
+            let cells = (0..POSITIONS * POSITIONS)
+                .map(|i| {
+                    let u = beam.low[0] + ((i % POSITIONS) as f64 + 0.5) * beam.cell;
+                    let v = beam.low[1] + ((i / POSITIONS) as f64 + 0.5) * beam.cell;
+                    let on = beam.frame.u * u + beam.frame.v * v + source.centre * middle.dot(source.centre);
+                    first(on + far, -source.centre)
+                })
+                .collect();
+            return Self { cells, beam: Some(beam) };
+        }
+        let cells = (0..6 * DIRECTIONS * DIRECTIONS).map(|i| first(source.centre, cell_direction(i))).collect();
+        Self { cells, beam: None }
+    }
+
+    fn at(&self, source: &Source, point: DVec3) -> Option<ObjectId> {
+        let cell = match &self.beam {
+            Some(beam) => beam.index(point)?,
+            None => direction_cell(point - source.centre),
+        };
+        self.cells.get(cell).copied().filter(|&o| o != VOID)
+    }
+}
+
+impl Beam {
+    fn across(direction: DVec3, world: &World) -> Option<Self> {
+        let bounds = world.bounds();
+        if bounds.is_empty() {
+            return None;
+        }
+        let frame = Frame::around(direction);
+        let corners = bounds.corners();
+        let span = |axis: DVec3| {
+            let along = corners.map(|c| c.dot(axis));
+            (along.iter().copied().fold(FAR, f64::min), along.iter().copied().fold(-FAR, f64::max))
+        };
+        let (u, v) = (span(frame.u), span(frame.v));
+        let cell = (u.1 - u.0).max(v.1 - v.0) / POSITIONS as f64;
+        (cell > 0.0).then_some(Self { frame, low: [u.0, v.0], cell })
+    }
+
+    fn index(&self, p: DVec3) -> Option<usize> {
+        let u = (p.dot(self.frame.u) - self.low[0]) / self.cell;
+        let v = (p.dot(self.frame.v) - self.low[1]) / self.cell;
+        let within = |x: f64| (0.0..POSITIONS as f64).contains(&x);
+        (within(u) && within(v)).then(|| v as usize * POSITIONS + u as usize)
+    }
+}
+
+/// The cell of a direction on the cube of directions: face by the largest component, then a grid on the face.
+fn direction_cell(d: DVec3) -> usize {
+    let a = d.abs();
+    let axis = if a.x >= a.y && a.x >= a.z {
+        0
+    } else if a.y >= a.z {
+        1
+    } else {
+        2
+    };
+    let main = d[axis];
+    if main == 0.0 {
+        return 0;
+    }
+    let place = |x: f64| (((x / main.abs() + 1.0) * (0.5 * DIRECTIONS as f64)) as usize).min(DIRECTIONS - 1);
+    let face = 2 * axis + usize::from(main < 0.0);
+    (face * DIRECTIONS + place(d[(axis + 1) % 3])) * DIRECTIONS + place(d[(axis + 2) % 3])
+}
+
+/// The unit direction through the middle of a cell.
+fn cell_direction(cell: usize) -> DVec3 {
+    let (face, rest) = (cell / (DIRECTIONS * DIRECTIONS), cell % (DIRECTIONS * DIRECTIONS));
+    let middle = |i: usize| (i as f64 + 0.5) * (2.0 / DIRECTIONS as f64) - 1.0;
+    let axis = face / 2;
+    let mut d = DVec3::ZERO;
+    d[axis] = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
+    d[(axis + 1) % 3] = middle(rest / DIRECTIONS);
+    d[(axis + 2) % 3] = middle(rest % DIRECTIONS);
+    d.normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_and_cells_are_inverse() {
+        for cell in 0..6 * DIRECTIONS * DIRECTIONS {
+            assert_eq!(direction_cell(cell_direction(cell) * 3.7), cell);
+        }
+    }
+}
