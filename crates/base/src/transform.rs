@@ -123,8 +123,24 @@ impl Transform {
         }
     }
 
+    /// This transform `count` times over; nothing for counts below 1. Counts that scenes use are composed one by one, so
+    /// that rounding is Radiance's; absurd ones by squaring, so that they end.
     fn repeated(&self, count: i64) -> Self {
-        (0..count).fold(Self::IDENTITY, |t, _| t.then(self))
+        const ONE_BY_ONE: i64 = 4096;
+        if count <= ONE_BY_ONE {
+            return (0..count).fold(Self::IDENTITY, |t, _| t.then(self));
+        }
+        let (mut total, mut power, mut left) = (Self::IDENTITY, *self, count);
+        while left > 0 {
+            if left & 1 != 0 {
+                total = total.then(&power);
+            }
+            left >>= 1;
+            if left > 0 {
+                power = power.then(&power);
+            }
+        }
+        total
     }
 
     /// The transform the other way.
@@ -208,6 +224,7 @@ mod tests {
             ("-i 3 -t 1 0 0", [4.0, 0.0, 0.0]),
             ("-i 2 -t 1 0 0 -i 3 -t 0 1 0", [3.0, 3.0, 0.0]),
             ("-i 0 -t 1 0 0", [1.0, 0.0, 0.0]),
+            ("-i 1000000000 -t 1 0 0", [1_000_000_001.0, 0.0, 0.0]),
         ] {
             let p = apply(text);
             assert!((p - DVec3::from(expected)).length() < 1e-12, "{text}: {p}");
