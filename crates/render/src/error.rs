@@ -46,6 +46,11 @@ impl Error {
         }
     }
 
+    /// What is wrong in a file that a primitive names, with the place in that file.
+    pub(crate) fn in_file(text: String, location: Location) -> Self {
+        Self { class: ErrorClass::User, text, location }
+    }
+
     /// A primitive type that cannot be rendered.
     pub(crate) fn unsupported(scene: &Scene, id: ObjectId) -> Self {
         Self::primitive(scene, id, "unsupported primitive type: Ambit cannot render this yet,")

@@ -134,7 +134,7 @@ impl Renderer {
             }
         }
         let objects = &self.scene.objects;
-        self.scene.complaints.drain(|id| notify.warn(&format!("compute error for {}", objects.describe(id))));
+        self.scene.complaints.drain(|text, id| notify.warn(&format!("{text} for {}", objects.describe(id))));
     }
 
     /// Rays traced so far.

@@ -105,7 +105,9 @@ impl Sampler for Tracer<'_> {
         while let Some(hit) = self.scene.world.nearest(&ray) {
             let clipped =
                 query.origin.clipped != 0 && self.scene.clip_sets.contains(query.origin.clipped, hit.modifier);
-            if !clipped && self.scene.modifiers.opacity(hit.modifier) == Opacity::Opaque {
+            let modifiers = &self.scene.modifiers;
+            let stand_in = || modifiers.material(hit.modifier).is_some_and(|(m, _)| m.is_proxy());
+            if !clipped && modifiers.opacity(hit.modifier) == Opacity::Opaque && !stand_in() {
                 return true;
             }
             ray.origin += unit * hit.distance;

@@ -3,6 +3,7 @@
 mod anisotropic;
 mod ashikhmin;
 mod brtd;
+mod bsdf;
 mod dielectric;
 mod function;
 mod glass;
@@ -18,6 +19,7 @@ mod wgmd;
 pub(crate) use anisotropic::Anisotropic;
 pub(crate) use ashikhmin::Ashikhmin;
 pub(crate) use brtd::Brtd;
+pub(crate) use bsdf::{Bsdf, Distribution};
 pub(crate) use dielectric::Dielectric;
 pub(crate) use function::FunctionMaterial;
 pub(crate) use glass::{Glass, WINDOW_INDEX};
@@ -56,6 +58,8 @@ pub(crate) enum Material {
     /// light, illum, glow, spotlight.
     Light(Light),
     Antimatter(Antimatter),
+    /// BSDF, aBSDF.
+    Bsdf(Box<Bsdf>),
 }
 
 /// What the modifiers between a surface and its material have gathered.
@@ -76,6 +80,7 @@ impl Material {
             Self::Brtd(m) => m.transmits,
             Self::Wgmd(m) => m.transmits,
             Self::Glass(_) | Self::Dielectric(_) | Self::Mist(_) => true,
+            Self::Bsdf(m) => m.see_through,
             Self::Ashikhmin(_)
             | Self::Function(_)
             | Self::Mirror(_)
@@ -103,6 +108,11 @@ impl Material {
         matches!(self, Self::Dielectric(_))
     }
 
+    /// True for stand-ins that only scattered light sees.
+    pub(crate) fn is_proxy(&self) -> bool {
+        matches!(self, Self::Bsdf(m) if m.proxy)
+    }
+
     /// Lights and antimatter keep their meaning under the irradiance switch.
     fn keeps_meaning(&self) -> bool {
         matches!(self, Self::Light(_) | Self::Antimatter(_))
@@ -114,7 +124,7 @@ impl Walk<'_> {
     /// material's own modifiers.
     pub(crate) fn material(&mut self, ray: &mut Ray<'_>, material: &Material, finish: Finish, bare: &Finish) -> bool {
         if self.tracer.options.irradiance && ray.lineage.within(Kinds::STRAIGHT) && !material.keeps_meaning() {
-            if material.opacity() == Opacity::Transparent {
+            if material.opacity() == Opacity::Transparent || material.is_proxy() {
                 return false;
             }
             self.lambertian(ray);
@@ -134,6 +144,7 @@ impl Walk<'_> {
             Material::Mirror(m) => self.mirror(ray, m, finish),
             Material::Light(m) => self.light(ray, m, finish),
             Material::Antimatter(m) => self.antimatter(ray, m),
+            Material::Bsdf(m) => self.bsdf(ray, m, finish),
         }
     }
 }

@@ -4,6 +4,7 @@ use super::builtin_font;
 use super::image::Image;
 use super::spectral_image::SpectralImage;
 use crate::Error;
+use crate::materials::Distribution;
 use crate::prepare::Environment;
 use ambit_file::os_text;
 use ambit_scene::{DataTable, Font, ObjectId, Scene};
@@ -21,6 +22,7 @@ pub(crate) struct Auxiliary<'e> {
     images: Loaded<Image>,
     fonts: Loaded<Font>,
     spectral_images: Loaded<SpectralImage>,
+    distributions: Loaded<Distribution>,
 }
 
 type Loaded<T> = HashMap<String, Result<Arc<T>, Error>>;
@@ -33,6 +35,7 @@ impl<'e> Auxiliary<'e> {
             images: HashMap::new(),
             fonts: HashMap::new(),
             spectral_images: HashMap::new(),
+            distributions: HashMap::new(),
         }
     }
 
@@ -81,6 +84,16 @@ impl<'e> Auxiliary<'e> {
     /// The bytes of a text file.
     pub(crate) fn text(&self, scene: &Scene, id: ObjectId, name: &str) -> Result<Vec<u8>, Error> {
         Ok(fetch(self.environment, scene, id, "text file", name)?.1)
+    }
+
+    /// The BSDF file `name`.
+    pub(crate) fn distribution(&mut self, scene: &Scene, id: ObjectId, name: &str) -> Result<Arc<Distribution>, Error> {
+        let environment = self.environment;
+        once(&mut self.distributions, name, || {
+            let (path, bytes) = fetch(environment, scene, id, "BSDF file", name)?;
+            Distribution::read(&bytes, &path.to_string_lossy(), environment.notify)
+                .map_err(|e| Error::in_file(e.text, e.location))
+        })
     }
 
     /// The hyperspectral picture `name`.

@@ -1,4 +1,4 @@
-//! Modifiers that had no value on some ray: noted from any thread without a lock, told between batches, each once.
+//! Modifiers that had no value on some ray, or no frame: noted from any thread without a lock, told between batches, each once.
 
 use ambit_scene::ObjectId;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
@@ -9,6 +9,8 @@ const QUIET: u8 = 0;
 const RAISED: u8 = 1;
 /// The user knows.
 const TOLD: u8 = 2;
+/// An up vector was parallel to the normal, and nobody has been told.
+const UPRIGHT: u8 = 3;
 
 /// One mark for each primitive.
 #[derive(Debug, Default)]
@@ -25,23 +27,35 @@ impl Complaints {
 
     /// Notes that primitive `id` had no value.
     pub(crate) fn raise(&self, id: ObjectId) {
+        self.note(id, RAISED);
+    }
+
+    /// Notes that the up vector of primitive `id` gives no frame.
+    pub(crate) fn raise_orientation(&self, id: ObjectId) {
+        self.note(id, UPRIGHT);
+    }
+
+    fn note(&self, id: ObjectId, what: u8) {
         let Some(mark) = self.marks.get(id as usize) else { return };
         if mark.load(Ordering::Relaxed) == QUIET {
-            mark.store(RAISED, Ordering::Relaxed);
+            mark.store(what, Ordering::Relaxed);
             self.pending.store(true, Ordering::Release);
         }
     }
 
-    /// Calls `tell` for those raised since the last call, in the order of the scene. No ray may be under way.
-    pub(crate) fn drain(&self, mut tell: impl FnMut(ObjectId)) {
+    /// Calls `tell` with what was raised since the last call, in the order of the scene. No ray may be under way.
+    pub(crate) fn drain(&self, mut tell: impl FnMut(&str, ObjectId)) {
         if !self.pending.swap(false, Ordering::AcqRel) {
             return;
         }
         for (id, mark) in (0..).zip(&self.marks) {
-            if mark.load(Ordering::Relaxed) == RAISED {
-                mark.store(TOLD, Ordering::Relaxed);
-                tell(id);
-            }
+            let text = match mark.load(Ordering::Relaxed) {
+                RAISED => "compute error",
+                UPRIGHT => "Illegal orientation vector",
+                _ => continue,
+            };
+            mark.store(TOLD, Ordering::Relaxed);
+            tell(text, id);
         }
     }
 }
@@ -55,7 +69,7 @@ mod tests {
         let complaints = Complaints::new(4);
         let told = || {
             let mut ids = Vec::new();
-            complaints.drain(|id| ids.push(id));
+            complaints.drain(|_, id| ids.push(id));
             ids
         };
         assert!(told().is_empty());

@@ -4,7 +4,7 @@ use super::Modifiers;
 use crate::Error;
 use crate::antimatter::Antimatter;
 use crate::materials::{
-    Alternate, Anisotropic, Ashikhmin, Brtd, Dielectric, FunctionMaterial, Glass, Light, Material, Mirror, Mist,
+    Alternate, Anisotropic, Ashikhmin, Brtd, Bsdf, Dielectric, FunctionMaterial, Glass, Light, Material, Mirror, Mist,
     Normal, NormalKind, Prism, WINDOW_INDEX, Wgmd,
 };
 use crate::patterns::Compiler;
@@ -80,6 +80,7 @@ pub(crate) fn compile_material(
         Kind::Prism1 | Kind::Prism2 => Material::Prism(Box::new(Prism::compile(scene, id, compiler)?)),
         Kind::Mist => Material::Mist(Mist::compile(scene, id)?),
         Kind::Antimatter => antimatter(scene, id, compiler)?,
+        Kind::Bsdf | Kind::ABsdf => Material::Bsdf(Box::new(Bsdf::compile(scene, id, compiler)?)),
         _ => return Err(Error::unsupported(scene, id)),
     })
 }
