@@ -48,9 +48,11 @@ def programs():
 
 def timed(side, arguments, folder, out):
     """Wall seconds and greatest resident size in MB of one run of rpict."""
+    # Radiance's rpict knows one thread only, and no option to say so.
+    threads = ["-n", "1"] if side.folder != scenes.ORACLE_BIN.resolve() and side.name == "ours" else []
     start = time.perf_counter()
     with open(out, "wb") as file:
-        child = subprocess.Popen([side.folder / "rpict", *map(str, arguments)], cwd=folder, env=side.environment(),
+        child = subprocess.Popen([side.folder / "rpict", *threads, *map(str, arguments)], cwd=folder, env=side.environment(),
                                  stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.PIPE)
         message = child.stderr.read().decode("latin-1")
         _, status, usage = os.wait4(child.pid, 0)
