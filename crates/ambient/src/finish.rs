@@ -3,7 +3,7 @@
 use crate::corral::{border, corral};
 use crate::hemisphere::Hemisphere;
 use crate::lookup::{MAX_FACTOR, MIN_FACTOR};
-use crate::mesh::{mesh, rotational};
+use crate::mesh::{Derivatives, cover, mesh, rotational};
 use crate::params::{Limits, Params};
 use crate::radii::{Ellipse, circle, ellipse, turned};
 use crate::record::Record;
@@ -79,24 +79,26 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
     let directions: Vec<DVec3> = (0..cells.len()).map(|c| plan.local(c)).collect();
     let nearness: Vec<f64> = cells.iter().map(|c| c.nearness).collect();
     let mean = value.mean();
-    let (shape, rotation) = if f64::from(mean) > BLACK {
+    let far = 10.0 * limits.edge + 1000.0;
+    let points: Vec<DVec3> = directions.iter().zip(cells).map(|(d, c)| *d * c.distance.min(far)).collect();
+    let lit = f64::from(mean) > BLACK;
+    let (derivatives, rotation, least) = if lit {
         let relative = |c: &Cell| (1.0 - FLOOR) * (f64::from(c.radiance.mean() / mean) - 1.0);
         let values: Vec<f64> = cells.iter().map(relative).collect();
-        let far = 10.0 * limits.edge + 1000.0;
-        let points: Vec<DVec3> = directions.iter().zip(cells).map(|(d, c)| *d * c.distance.min(far)).collect();
-        let derivatives = mesh(n, &points, &values);
         let crowd = 1.0 / (VERY_NEAR * limits.min_radius * limits.accuracy);
         let crowded = border(n).filter(|&c| nearness[c] > crowd).count() as f64;
         let least = crowded > CROWDED * border(n).count() as f64;
-        let shape = if derivatives.is_finite() {
-            ellipse(&derivatives, limits, weight, least)
-        } else {
-            harmonic(&nearness, limits, weight)
-        };
-        (shape, turned(rotational(n, &directions, &values), shape.turn))
+        (mesh(n, &points, &values), rotational(n, &directions, &values), least)
     } else {
-        (harmonic(&nearness, limits, weight), [0.0; 2])
+        // Nothing tells how far the dark reaches but the surroundings' shape.
+        (Derivatives { gradient: [0.0; 2], ..cover(n, &points) }, [0.0; 2], false)
     };
+    let shape = if derivatives.is_finite() {
+        ellipse(&derivatives, limits, weight, least)
+    } else {
+        harmonic(&nearness, limits, weight)
+    };
+    let rotation = turned(rotation, shape.turn);
     let reach = shape.radii.map(|r| r * limits.accuracy);
     let frame = plan.frame();
     let (s, c) = shape.turn.sin_cos();

@@ -112,21 +112,29 @@ pub(crate) fn mesh(n: usize, points: &[DVec3], values: &[f64]) -> Derivatives {
     sum
 }
 
+/// Derivatives of the form factor of all that the mesh covers: of a mesh of radiance 1 only the open rim counts.
+pub(crate) fn cover(n: usize, points: &[DVec3]) -> Derivatives {
+    let rim = rim(n);
+    let mut sum = Derivatives::default();
+    for (k, &a) in rim.iter().enumerate() {
+        sum.add_edge(points[a], points[rim[(k + 1) % rim.len()]], 1.0);
+    }
+    sum
+}
+
 /// The strip between the mesh's rim and the horizon: each of its quads has the radiance of the farther of two rim cells.
+/// The edges between its quads lie in planes through the point and the normal, where they add nothing.
 fn skirt(rim: &[usize], points: &[DVec3], distances: &[f64], values: &[f64], sum: &mut Derivatives) {
     let strip = |k: usize| {
         let (a, b) = (rim[k], rim[(k + 1) % rim.len()]);
         values[if distances[b] > distances[a] { b } else { a }]
     };
     let foot = |p: DVec3| DVec3::new(p.x, p.y, 0.0);
-    let mut before = strip(rim.len() - 1);
     for k in 0..rim.len() {
         let (a, b) = (points[rim[k]], points[rim[(k + 1) % rim.len()]]);
         let value = strip(k);
         sum.add_edge(a, b, -value);
-        sum.add_edge(a, foot(a), value - before);
         sum.add_edge(foot(a), foot(b), value);
-        before = value;
     }
 }
 
