@@ -4,7 +4,7 @@ use crate::session::{Session, Stop};
 use ambit_cli::{Class, Failure, Function, Rendering};
 use ambit_file::{Header, general};
 use ambit_render::picture::SourceOutline;
-use ambit_render::{Answer, Definition, Environment, OctreeSource, Renderer, Request, load};
+use ambit_render::{Answer, Definition, Environment, OctreeSource, Renderer, Request, Store, load};
 use ambit_scene::{ErrorClass, ObjectId};
 use std::borrow::Cow;
 use std::path::Path;
@@ -48,13 +48,19 @@ impl<'a> Scene<'a> {
         let environment = Environment { find: &find, notify: &session.messages, definitions: &definitions };
         let loaded = load(source, &environment).map_err(failed)?;
         let header = loaded.header().clone();
+        let ambient = rendering.ambient_file.as_ref().zip(rendering.reuse).filter(|_| !casting);
+        let caching = rendering.options.ambient.accuracy > 0.0;
+        let fingerprint = (ambient.is_some() && caching).then(|| loaded.fingerprint(&rendering.options, &environment));
         let mut renderer = Renderer::new(loaded, rendering.options.clone(), &environment).map_err(failed)?;
-        if let Some(file) = rendering.ambient_file.as_ref().filter(|_| !casting) {
-            if rendering.options.ambient.accuracy <= 0.0 {
+        if let Some((file, reuse)) = ambient {
+            if let Some(fingerprint) = &fingerprint {
+                let (header, owner) = (ambient_header(rendering, name), owner());
+                let path = Path::new(file);
+                let store = Store { path, header: &header, fingerprint, reuse, owner: &owner };
+                renderer.share(&store, &session.messages).map_err(failed)?;
+            } else {
                 let text = format!("zero ambient accuracy so \"{file}\" not opened");
                 ambit_base::Notify::warn(&session.messages, &text);
-            } else {
-                renderer.share(Path::new(file), &ambient_header(rendering, name), &session.messages).map_err(failed)?;
             }
         }
         session.begin_work();
@@ -96,6 +102,12 @@ fn failed(error: ambit_render::Error) -> Stop {
     // The text is Radiance's; the place comes after it, as scripts look at the beginning.
     let text = if place.line > 0 { format!("{error} ({place})") } else { error.to_string() };
     Stop::Failure(Failure { class, text })
+}
+
+/// A name for this process among all that share a file system.
+fn owner() -> String {
+    let host = rustix::system::uname().nodename().to_string_lossy().replace(|c: char| !c.is_ascii_alphanumeric(), "_");
+    format!("{host}-{}", std::process::id())
 }
 
 /// The header lines of a new ambient file: the options that its values depend on, in Radiance's order.

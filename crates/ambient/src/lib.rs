@@ -45,7 +45,8 @@ mod tilt;
 
 pub use cache::{Cache, Statistics};
 pub use codec::{Layout, RECORD_BYTES};
-pub use file::{AmbientFile, Contents, FORMAT, FileError, Opened, scan, scan_header};
+pub use file::{AmbientFile, Contents, FORMAT, FileError, Opened, Opening, PATIENCE, Reuse, scan, scan_header};
+pub use file::{Comparison, Fingerprint, Gravity, Mark, MarkLine, fingerprint_lines};
 pub use hemisphere::Hemisphere;
 pub use params::{ASSUMED_REFLECTANCE, Limits, Params};
 pub use record::Record;

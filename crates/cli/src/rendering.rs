@@ -3,7 +3,7 @@
 use crate::common::{Carries, Common};
 use crate::failure::Failure;
 use crate::table::{Label, Place, Row};
-use ambit_render::{Options, Selection};
+use ambit_render::{Options, Reuse, Selection};
 
 /// Parameters of the light, and the files that belong to them.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +12,8 @@ pub struct Rendering {
     pub options: Options,
     /// `-af`: the ambient file.
     pub ambient_file: Option<String>,
+    /// `--reuse`: what is done with records that the ambient file has; `None` leaves the file alone.
+    pub reuse: Option<Reuse>,
     /// `-f FILE` and `-e EXPRESSION`, in order.
     pub functions: Vec<Function>,
     /// `-cs`, `-cw`.
@@ -67,6 +69,7 @@ impl Rendering {
         Self {
             options,
             ambient_file: None,
+            reuse: Some(Reuse::Auto),
             functions: Vec::new(),
             spectrum: Spectrum { samples: 3, from: 380.0, to: 780.0 },
             photon_maps: Vec::new(),
@@ -375,6 +378,24 @@ fn file_rows<S: Carries<Rendering> + Carries<Common>>() -> Vec<Row<S>> {
             "keep irradiance values in this file and use those in it",
         )
         .values("FILE"),
+        word(
+            "-reuse",
+            |s: &mut S, how, _| {
+                light(s).reuse = match how.as_str() {
+                    "auto" => Some(Reuse::Auto),
+                    "strict" => Some(Reuse::Strict),
+                    "append" => Some(Reuse::Append),
+                    "read-only" => Some(Reuse::ReadOnly),
+                    "off" => None,
+                    _ => return Err(Failure::at("--reuse")),
+                };
+                Ok(())
+            },
+            "HOW",
+            "which values of the ambient file count: auto (those of the same scene; another scene's are left alone, with \
+             a warning, and a file of its own beside them is used), strict (a difference is an error), append (all), \
+             read-only (as auto, and nothing is written), off (the file is neither read nor written)",
+        ),
         word(
             "ae",
             |s: &mut S, name, _| light(s).names([name], false),

@@ -3,6 +3,7 @@
 
 mod antimatter;
 mod error;
+mod fingerprint;
 mod indirect;
 mod materials;
 mod options;
@@ -19,8 +20,10 @@ mod tracer;
 mod walk;
 mod work;
 
+pub use ambit_ambient::{Fingerprint, Reuse};
 pub use error::Error;
 pub use options::{Ambient, Direct, Limits, Medium, Options, Selection, Specular};
 pub use prepare::{Definition, Environment, Loaded, OctreeSource, load};
 pub use renderer::Renderer;
 pub use request::{Aim, Answer, Request};
+pub use sharing::Store;

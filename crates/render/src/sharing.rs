@@ -2,9 +2,24 @@
 //! in which they were published.
 
 use crate::{Error, Renderer};
-use ambit_ambient::{AmbientFile, FileError};
+use ambit_ambient::{AmbientFile, FileError, Fingerprint, Opening, PATIENCE, Reuse};
 use ambit_base::Notify;
 use std::path::Path;
+
+/// The ambient file that a run wants.
+#[derive(Clone, Copy, Debug)]
+pub struct Store<'a> {
+    /// Its name.
+    pub path: &'a Path,
+    /// Lines of a new file's header: the command with its effective options, software and dates.
+    pub header: &'a [String],
+    /// What the run's records depend on.
+    pub fingerprint: &'a Fingerprint,
+    /// What is done with records that are there.
+    pub reuse: Reuse,
+    /// Names this process among all that share a file system.
+    pub owner: &'a str,
+}
 
 /// An open ambient file, and how far the cache's records have been handed to it.
 #[derive(Debug)]
@@ -14,11 +29,11 @@ pub(crate) struct Sharing {
 }
 
 impl Renderer {
-    /// Loads the records of the ambient file at `path` and shares new ones through it; creates it if absent.
-    ///
-    /// `header` are the lines of a new file's header: the command with its effective options, software and dates.
-    pub fn share(&mut self, path: &Path, header: &[String], notify: &dyn Notify) -> Result<(), Error> {
-        let opened = AmbientFile::open(path, header, notify).map_err(|e| failed(&e))?;
+    /// Loads the records of an ambient file and shares new ones through it; creates it if absent.
+    pub fn share(&mut self, store: &Store<'_>, notify: &dyn Notify) -> Result<(), Error> {
+        let Store { path, header, fingerprint, reuse, owner } = *store;
+        let opening = Opening { header, fingerprint: Some(fingerprint), reuse, patience: PATIENCE, owner };
+        let opened = AmbientFile::open(path, &opening, notify).map_err(|e| failed(&e))?;
         let cache = self.cache_mut();
         cache.quantise(true);
         cache.load(opened.records);
@@ -56,7 +71,7 @@ impl Renderer {
 
 fn failed(e: &FileError) -> Error {
     match e {
-        FileError::Incompatible { .. } => Error::user(e.to_string()),
+        FileError::Incompatible { .. } | FileError::Unfit { .. } => Error::user(e.to_string()),
         _ => Error::system(e.to_string()),
     }
 }

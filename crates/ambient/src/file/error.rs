@@ -35,6 +35,14 @@ pub enum FileError {
         /// Why it failed.
         source: io::Error,
     },
+    /// The file is of another scene or of other parameters, which the user does not tolerate.
+    #[error("ambient file \"{file}\" does not fit: {problem}")]
+    Unfit {
+        /// The file as the user named it.
+        file: String,
+        /// What differs.
+        problem: String,
+    },
     /// Another program shortened the file to less than its header.
     #[error("ambient file \"{file}\" was truncated by another program")]
     Truncated {

@@ -1,16 +1,26 @@
 //! The ambient file: records shared between runs and between programs that run at the same time.
 //!
-//! A text header, a magic number of two bytes, then records of 67 bytes up to the end of the file. Everybody who writes
+//! A text header, a magic number of two bytes, then records of 67 bytes up to the end of the file. The header tells, in
+//! lines that Radiance passes over, what scene and parameters the records are of ([`Fingerprint`]); records of another
+//! scene are left alone ([`Reuse`]). Everybody who writes
 //! holds an exclusive fcntl lock on the whole file, which Radiance's programs see and respect; whoever reads holds a
 //! shared one. Whole records are appended in one call under the lock, after reading what others appended; an incomplete
 //! record at the end is what a killed program left, and is cut off under the lock before anything is written.
 
 mod error;
+mod fingerprint;
+mod open;
+mod reuse;
 mod scan;
 mod share;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_reuse;
 
 pub use error::FileError;
+pub use fingerprint::{Comparison, Fingerprint, Gravity, Mark, MarkLine, fingerprint_lines};
+pub use open::Opened;
+pub use reuse::{Opening, PATIENCE, Reuse};
 pub use scan::{Contents, FORMAT, scan, scan_header};
-pub use share::{AmbientFile, Opened};
+pub use share::AmbientFile;

@@ -11,7 +11,7 @@ use std::sync::Mutex;
 
 /// Keeps the warnings.
 #[derive(Default)]
-struct Heard(Mutex<Vec<String>>);
+pub(super) struct Heard(Mutex<Vec<String>>);
 
 impl Notify for Heard {
     fn warn(&self, text: &str) {
@@ -20,7 +20,7 @@ impl Notify for Heard {
 }
 
 impl Heard {
-    fn all(&self) -> String {
+    pub(super) fn all(&self) -> String {
         self.0.lock().unwrap().join("\n")
     }
 }
@@ -41,29 +41,29 @@ fn record(number: u32) -> Record {
     .quantised()
 }
 
-fn batch(from: u32, count: u32) -> Vec<Record> {
+pub(super) fn batch(from: u32, count: u32) -> Vec<Record> {
     (from..from + count).map(record).collect()
 }
 
-fn lines() -> Vec<String> {
+pub(super) fn lines() -> Vec<String> {
     ["rtrace -ab 1 room.oct", "SOFTWARE= AMBIT", "CAPDATE= 2026:01:02 03:04:05", "GMT= 2026:01:02 03:04:05"]
         .map(str::to_owned)
         .to_vec()
 }
 
-struct Folder(tempfile::TempDir);
+pub(super) struct Folder(tempfile::TempDir);
 
 impl Folder {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self(tempfile::tempdir().unwrap())
     }
 
-    fn file(&self) -> PathBuf {
+    pub(super) fn file(&self) -> PathBuf {
         self.0.path().join("a.amb")
     }
 
     /// A file of `count` records.
-    fn filled(count: u32) -> Self {
+    pub(super) fn filled(count: u32) -> Self {
         let folder = Self::new();
         let mut file = open(&folder.file()).file.unwrap();
         file.append(&batch(0, count), &Silent).unwrap();
@@ -72,8 +72,17 @@ impl Folder {
     }
 }
 
+/// An opening without fingerprint.
+fn plain(header: &[String]) -> Opening<'_> {
+    Opening { header, fingerprint: None, reuse: Reuse::Auto, patience: PATIENCE, owner: "test-1" }
+}
+
+fn try_open(path: &Path, notify: &dyn Notify) -> Result<Opened, FileError> {
+    AmbientFile::open(path, &plain(&lines()), notify)
+}
+
 fn open(path: &Path) -> Opened {
-    AmbientFile::open(path, &lines(), &Silent).unwrap()
+    try_open(path, &Silent).unwrap()
 }
 
 #[test]
@@ -85,7 +94,7 @@ fn a_new_file_has_the_header_that_radiance_writes() {
         GMT= 2026:01:02 03:04:05\nWAVELENGTH_SPLITS= 780 588 480 380\nNCOMP=3\nFORMAT=Radiance_ambval\n\n\x02\x31";
     assert_eq!(fs::read(folder.file()).unwrap(), expected.as_bytes());
     let missing = folder.0.path().join("no/a.amb");
-    let error = AmbientFile::open(&missing, &lines(), &Silent).unwrap_err().to_string();
+    let error = try_open(&missing, &Silent).unwrap_err().to_string();
     assert!(
         error.starts_with("cannot open ambient file \"") && error.ends_with("No such file or directory"),
         "{error}"
@@ -124,7 +133,7 @@ fn a_cut_tail_is_removed_and_appending_goes_on_at_a_boundary() {
     let bytes = fs::read(folder.file()).unwrap();
     fs::write(folder.file(), &bytes[..bytes.len() - 30]).unwrap();
     let heard = Heard::default();
-    let opened = AmbientFile::open(&folder.file(), &lines(), &heard).unwrap();
+    let opened = try_open(&folder.file(), &heard).unwrap();
     assert_eq!(opened.records, batch(0, 9));
     assert!(heard.all().contains("the last 37 bytes"), "{}", heard.all());
     assert_eq!(fs::metadata(folder.file()).unwrap().len() as usize, bytes.len() - RECORD_BYTES);
@@ -157,7 +166,7 @@ fn a_damaged_record_costs_only_itself() {
     bytes[at..at + RECORD_BYTES].fill(0xff);
     fs::write(folder.file(), &bytes).unwrap();
     let heard = Heard::default();
-    let opened = AmbientFile::open(&folder.file(), &lines(), &heard).unwrap();
+    let opened = try_open(&folder.file(), &heard).unwrap();
     assert_eq!(opened.records, [batch(0, 4), batch(5, 5)].concat());
     assert!(heard.all().contains("ignoring 1 values"), "{}", heard.all());
     assert_eq!(fs::read(folder.file()).unwrap(), bytes, "nothing is cut");
@@ -182,7 +191,7 @@ fn garbage_is_refused_and_left_alone() {
         (picture, "FORMAT=32-bit_rle_rgbe"),
     ] {
         fs::write(folder.file(), &bytes).unwrap();
-        let error = AmbientFile::open(&folder.file(), &lines(), &Silent).unwrap_err();
+        let error = try_open(&folder.file(), &Silent).unwrap_err();
         assert!(matches!(error, FileError::Incompatible { .. }));
         assert!(error.to_string().contains(problem), "{error}");
         assert_eq!(fs::read(folder.file()).unwrap(), bytes);
@@ -203,7 +212,7 @@ fn an_empty_file_is_waited_for() {
     fs::rename(aside, folder.file()).unwrap();
     assert_eq!(waiting.join().unwrap(), batch(0, 3));
     fs::write(folder.file(), b"").unwrap();
-    let error = AmbientFile::open(&folder.file(), &lines(), &Silent).unwrap_err().to_string();
+    let error = try_open(&folder.file(), &Silent).unwrap_err().to_string();
     assert!(error.contains("bad/incompatible ambient file") && error.contains("empty"), "{error}");
 }
 
@@ -213,7 +222,7 @@ fn a_read_only_file_is_used_with_a_warning() {
     let file = fs::File::open(folder.file()).unwrap();
     let heard = Heard::default();
     // Permissions do not stop the superuser, so the way after the refusal is taken directly.
-    let opened = AmbientFile::read_only(&file, "a.amb", &heard).unwrap();
+    let opened = AmbientFile::open_read_only(&file, &plain(&[]), &heard).unwrap();
     assert_eq!(opened.records, batch(0, 5));
     assert!(opened.file.is_none());
     assert_eq!(heard.all(), "loaded 5 values from read-only ambient file");
@@ -294,8 +303,7 @@ fn processes_share_a_file_without_losing_records() {
         assert!(child.wait().unwrap().success());
     }
     let heard = Heard::default();
-    let mut found: Vec<u32> =
-        AmbientFile::open(&folder.file(), &lines(), &heard).unwrap().records.iter().map(|r| r.corral).collect();
+    let mut found: Vec<u32> = try_open(&folder.file(), &heard).unwrap().records.iter().map(|r| r.corral).collect();
     assert_eq!(heard.all(), "");
     found.sort_unstable();
     let expected: Vec<u32> = (0..4).flat_map(|n| n * 10_000..n * 10_000 + 1000).collect();

@@ -7,6 +7,7 @@ mod modifiers;
 mod world;
 
 pub(crate) use fault::Fault;
+pub(crate) use load::Contents;
 pub use load::{Definition, Environment, Loaded, OctreeSource, load};
 pub(crate) use material::compile_material;
 pub(crate) use modifiers::{Modifiers, Node};
