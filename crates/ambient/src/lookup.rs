@@ -22,7 +22,7 @@ const PROBE_COS2: f64 = 0.116_977_778_440_510_98;
 /// A query, prepared for many comparisons.
 pub(crate) struct Asked {
     pub(crate) position: DVec3,
-    normal: Vec3,
+    pub(crate) normal: Vec3,
     shading: Vec3,
     pub(crate) level: u8,
     /// Records of the query's own level must weigh at least this.

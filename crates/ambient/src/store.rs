@@ -11,7 +11,7 @@ use crate::lookup::{Asked, Sum, accumulate};
 use crate::params::Limits;
 use crate::record::Record;
 use crate::sampler::{Query, Sampler};
-use crate::sieve::{LANES, Probe, Sieve};
+use crate::sieve::{Block, LANES, Mark, Probe};
 use ambit_base::DVec3;
 
 /// Weight from which the records of smaller cells suffice and longer-reaching ones are not searched.
@@ -74,7 +74,7 @@ impl Derived {
 struct Node {
     /// Index of the first of eight children; 0: none (the root is nobody's child).
     children: u32,
-    /// The node's list in the columns of the store.
+    /// The node's list: its first block, its records and how many blocks it has.
     start: u32,
     len: u32,
     capacity: u32,
@@ -88,10 +88,9 @@ pub(crate) struct Store {
     nodes: Vec<Node>,
     places: Vec<Place>,
     derived: Vec<Derived>,
-    /// The lists: what the coarse test reads, and which record it is.
-    sieve: Sieve,
-    listed: Vec<u32>,
-    /// Segments given up by lists that grew: entry k holds the starts of those of 2^k records.
+    /// The lists, each a run of blocks.
+    blocks: Vec<Block>,
+    /// Runs given up by lists that grew: entry k holds the starts of those of 2^k blocks.
     vacant: Vec<Vec<u32>>,
 }
 
@@ -104,8 +103,7 @@ impl Store {
             nodes: vec![Node::default()],
             places: Vec::new(),
             derived: Vec::new(),
-            sieve: Sieve::default(),
-            listed: Vec::new(),
+            blocks: Vec::new(),
             vacant: Vec::new(),
         }
     }
@@ -161,7 +159,7 @@ impl Store {
             node = &self.nodes[node.children as usize + upper.bitmask() as usize];
         }
         let close = DUPLICATE * accuracy * f64::from(record.radii[0]);
-        self.listed[node.start as usize..(node.start + node.len) as usize].iter().any(|&i| {
+        self.listed(node).any(|i| {
             let p = &self.places[i as usize];
             p.level == place.level
                 && p.weight == place.weight
@@ -184,19 +182,23 @@ impl Store {
         node
     }
 
+    /// The records of a node's list, in order.
+    fn listed(&self, node: &Node) -> impl Iterator<Item = u32> {
+        let start = node.start as usize;
+        (0..node.len as usize).map(move |i| self.blocks[start + i / LANES].id(i % LANES))
+    }
+
     /// Enters a record in a node's list: level ascending, weight descending, a new record before its equals.
     fn list(&mut self, node: usize, id: u32, relative: DVec3, reach: f64) {
         let place = self.places[id as usize];
-        let Node { start, len, capacity, .. } = self.nodes[node];
-        let list = &self.listed[start as usize..(start + len) as usize];
         let key = |p: &Place| (p.level, -p.weight);
-        let at = list.partition_point(|&i| key(&self.places[i as usize]) < key(&place));
-        if len == capacity {
-            let grown = (capacity * 2).max(LANES as u32);
-            let fresh = self.segment(grown);
-            let (from, to) = (start as usize, fresh as usize);
-            self.listed.copy_within(from..from + len as usize, to);
-            self.sieve.copy_within(from..from + len as usize, to);
+        let at = self.listed(&self.nodes[node]).take_while(|&i| key(&self.places[i as usize]) < key(&place)).count();
+        let Node { start, len, capacity, .. } = self.nodes[node];
+        let (len, mut first) = (len as usize, start as usize);
+        if len == capacity as usize * LANES {
+            let grown = (capacity * 2).max(1);
+            let fresh = self.run(grown);
+            self.blocks.copy_within(first..first + capacity as usize, fresh as usize);
             if capacity > 0 {
                 let class = capacity.trailing_zeros() as usize;
                 if self.vacant.len() <= class {
@@ -204,27 +206,26 @@ impl Store {
                 }
                 self.vacant[class].push(start);
             }
+            first = fresh as usize;
             self.nodes[node].start = fresh;
             self.nodes[node].capacity = grown;
         }
-        let first = self.nodes[node].start as usize;
-        let end = first + len as usize;
-        self.listed.copy_within(first + at..end, first + at + 1);
-        self.sieve.copy_within(first + at..end, first + at + 1);
-        self.listed[first + at] = id;
-        self.sieve.set(first + at, relative, place.normal, reach);
+        for i in (at..len).rev() {
+            let mark = self.blocks[first + i / LANES].mark(i % LANES);
+            self.blocks[first + (i + 1) / LANES].set((i + 1) % LANES, mark);
+        }
+        self.blocks[first + at / LANES].set(at % LANES, Mark::new(relative, place.normal, reach, id));
         self.nodes[node].len += 1;
     }
 
-    /// Room for a list of `capacity` records, a power of two.
-    fn segment(&mut self, capacity: u32) -> u32 {
-        if let Some(start) = self.vacant.get_mut(capacity.trailing_zeros() as usize).and_then(Vec::pop) {
-            self.sieve.clear(start as usize..(start + capacity) as usize);
+    /// A run of vacant blocks, a power of two.
+    fn run(&mut self, blocks: u32) -> u32 {
+        if let Some(start) = self.vacant.get_mut(blocks.trailing_zeros() as usize).and_then(Vec::pop) {
+            self.blocks[start as usize..(start + blocks) as usize].fill(Block::VACANT);
             return start;
         }
-        let start = self.listed.len();
-        self.listed.resize(start + capacity as usize, 0);
-        self.sieve.resize(start + capacity as usize);
+        let start = self.blocks.len();
+        self.blocks.resize(start + blocks as usize, Block::VACANT);
         start as u32
     }
 
@@ -274,21 +275,24 @@ impl<S: Sampler> Search<'_, S> {
     fn list(&self, node: Node, corner: DVec3, sum: &mut Sum) -> f32 {
         let store = self.store;
         let start = node.start as usize;
-        let range = start..start + (node.len as usize).next_multiple_of(LANES);
-        let first = &store.places[store.listed[start] as usize];
+        let blocks = &store.blocks[start..start + (node.len as usize).div_ceil(LANES)];
+        let first = &store.places[blocks[0].id(0) as usize];
         let angle = self.asked.angle_for(first.level);
-        let probe = Probe::new(self.query.position - corner, self.query.normal.as_vec3(), angle);
+        let probe = Probe::new(self.query.position - corner, self.asked.normal, angle);
         let mut weight = 0.0;
-        store.sieve.pass(range, &probe, |i| {
-            let id = store.listed[start + i] as usize;
-            let place = &store.places[id];
-            let deeper = place.level > self.asked.level;
-            if deeper || place.level == self.asked.level && place.weight < self.asked.least_weight {
-                return false;
+        for block in blocks {
+            let mut passing = block.passing(&probe);
+            while passing != 0 {
+                let id = block.id(passing.trailing_zeros() as usize & (LANES - 1)) as usize;
+                passing &= passing - 1;
+                let place = &store.places[id];
+                let deeper = place.level > self.asked.level;
+                if deeper || place.level == self.asked.level && place.weight < self.asked.least_weight {
+                    return weight;
+                }
+                weight += accumulate(&self.asked, angle, place, &store.derived[id], self.sampler, self.query, sum);
             }
-            weight += accumulate(&self.asked, angle, place, &store.derived[id], self.sampler, self.query, sum);
-            true
-        });
+        }
         weight
     }
 }

@@ -242,16 +242,19 @@ fn a_strip_overhead_has_its_gradient() {
 }
 
 #[test]
-fn black_hemispheres_have_radii_from_the_distances() {
-    // Centre of a sphere of radius 3; an infinite ceiling at height 2: the harmonic mean is 1.5 times the height.
-    let r = record(1024, DVec3::ZERO, |_, _| (0.0, 3.0));
-    assert_eq!(r.value, Rgb::ZERO);
-    close(f64::from(r.radii[0]), 3.0, 1e-5, "sphere");
-    let r = record(4096, DVec3::ZERO, |_, d| (0.0, 2.0 / d.z));
-    close(f64::from(r.radii[0]), 3.0, 0.01, "ceiling");
-    // One infinite wall at distance 0.2: 3π/2 times the distance.
-    let r = record(16384, DVec3::ZERO, |_, d| (0.0, if d.x > 0.0 { 0.2 / d.x } else { FAR }));
-    close(f64::from(r.radii[0]), 0.942478, 0.01, "wall");
+fn black_hemispheres_have_radii_from_the_shape_of_what_is_seen() {
+    // In a sphere of radius R the samples cover a disk that ends at sine ρ = 1 − 1/n from the normal; with its form factor's
+    // curvature λ = 4ρ²(1 − ρ²)/R² the radius is (4/λ)^¼.
+    for (divisions, n) in [(1024, 32.0), (4096, 64.0)] {
+        for radius in [0.75, 3.0, 12.0] {
+            let r = record(divisions, DVec3::ZERO, |_, _| (0.0, radius));
+            assert_eq!(r.value, Rgb::ZERO);
+            assert_eq!((r.gradient, r.rotation), ([0.0; 2], [0.0; 2]));
+            let rho2 = f64::powi(1.0 - 1.0 / n, 2);
+            let expected = radius.sqrt() / (rho2 * (1.0 - rho2)).powf(0.25);
+            close(f64::from(r.radii[0]), expected, 0.02 * expected, "sphere");
+        }
+    }
 }
 
 #[test]

@@ -199,7 +199,7 @@ fn time(name: &str, rays: &[Ray], mut f: impl FnMut(&Ray) -> bool) {
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let has = |w: &str| words.iter().any(|x| x == w);
-    let rank = Rank { opacity: Opacity::Opaque, modifier: 0, blocks: true };
+    let rank = Rank { opacity: Opacity::Opaque, modifier: 0, blocks: true, bends: false };
     let mut world = build(has("mesh"), rank);
     if has("scalar") {
         world = world.without_vectors();

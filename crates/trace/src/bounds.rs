@@ -8,6 +8,19 @@ pub(crate) fn grown(b: Bounds, by: f64) -> Bounds {
     Bounds { min: b.min - by, max: b.max + by }
 }
 
+/// True if a ray meets a box, rounding included: never false where one does.
+pub(crate) fn meets(b: &Bounds, o: DVec3, d: DVec3) -> bool {
+    let inverse = d.recip();
+    let (x, y) = ((b.min - o) * inverse, (b.max - o) * inverse);
+    // `min` and `max` pass over what 0/0 gives, for a ray in the plane of a side.
+    let (near, far) = (x.min(y), x.max(y));
+    let (enter, leave) = (near.x.max(near.y).max(near.z).max(0.0), far.x.min(far.y).min(far.z));
+    enter <= leave + LEEWAY * leave.abs()
+}
+
+/// Relative rounding of the distances at which a box is met.
+const LEEWAY: f64 = 1e-12;
+
 /// The box around points.
 pub(crate) fn around(points: impl IntoIterator<Item = DVec3>) -> Bounds {
     let mut b = Bounds::EMPTY;

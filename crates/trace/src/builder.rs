@@ -100,6 +100,9 @@ impl<T> Default for Chunks<T> {
     }
 }
 
+/// Boxes around what bends light that every shadow ray is compared with.
+const BENDERS: usize = 8;
+
 /// Collects what a world holds.
 #[derive(Debug, Default)]
 pub struct WorldBuilder {
@@ -111,19 +114,13 @@ pub struct WorldBuilder {
     known: HashMap<Rank, u32>,
     placements: u32,
     overflow: bool,
-    bends: bool,
+    benders: Vec<Bounds>,
 }
 
 impl WorldBuilder {
     /// Nothing yet.
     pub fn new() -> Self {
         Self::default()
-    }
-
-    /// Says that some surface can send shadow rays off their line, or make others invisible (dielectric, prism,
-    /// antimatter …): then no shadow query ends before the nearest hit is known.
-    pub fn set_bends(&mut self, bends: bool) {
-        self.bends = bends;
     }
 
     /// Adds a surface. Sources and degenerate shapes are ignored, as are shapes with coordinates that are no numbers.
@@ -146,9 +143,11 @@ impl WorldBuilder {
             return;
         }
         if let Some(facet) = Facet::<3>::new(&p.vertices, normal, offset) {
+            self.bend(rank.bends, || facet.bounds());
             let rank = self.rank(rank);
             self.triangles.push(Kept { facet, object, rank });
         } else if let Some(facet) = Facet::<4>::new(&p.vertices, normal, offset) {
+            self.bend(rank.bends, || facet.bounds());
             let rank = self.rank(rank);
             self.quads.push(Kept { facet, object, rank });
         } else {
@@ -170,7 +169,11 @@ impl WorldBuilder {
 
     /// Adds an instance of another world. `over` is the primitive's modifier unless that is void.
     pub fn add_instance(&mut self, object: ObjectId, transform: Transform, world: Arc<World>, over: Option<Rank>) {
-        self.bends |= over.is_none() && world.bends;
+        if over.is_none() {
+            for inner in &world.benders {
+                self.bend(true, || bounds::around(inner.corners().map(|p| transform.point(p))));
+            }
+        }
         let (inner, below) = (world.bounds, world.placements);
         self.place(object, transform, Content::World(world), over, inner, below);
     }
@@ -178,6 +181,9 @@ impl WorldBuilder {
     /// Adds a placed mesh. `over` is the primitive's modifier unless that is void.
     pub fn add_mesh(&mut self, object: ObjectId, transform: Transform, mesh: Arc<Mesh>, over: Option<Rank>) {
         let inner = mesh.bounds();
+        if over.is_none() && mesh.bends() && !inner.is_empty() {
+            self.bend(true, || bounds::around(inner.corners().map(|p| transform.point(p))));
+        }
         self.place(object, transform, Content::Mesh(mesh), over, inner, 0);
     }
 
@@ -200,14 +206,27 @@ impl WorldBuilder {
             None => self.overflow = true,
         }
         let rank =
-            over.unwrap_or(Rank { opacity: crate::Opacity::Nothing, modifier: ambit_scene::VOID, blocks: false });
+            over.unwrap_or(Rank { opacity: crate::Opacity::Nothing, modifier: ambit_scene::VOID, blocks: false, bends: false });
         self.push(Item::Placed(Box::new(Placed { object, transform, content, over, placement })), b, rank);
     }
 
     fn push(&mut self, item: Item, b: Bounds, rank: Rank) {
         if b.min.is_finite() && b.max.is_finite() {
+            self.bend(rank.bends, || b);
             let rank = self.rank(rank);
             self.items.push((item, b, rank));
+        }
+    }
+
+    /// Notes a box around something that bends light: those after the first few share one.
+    fn bend(&mut self, bends: bool, around: impl FnOnce() -> Bounds) {
+        if !bends {
+            return;
+        }
+        if self.benders.len() < BENDERS {
+            self.benders.push(around());
+        } else {
+            self.benders[BENDERS - 1].join(&around());
         }
     }
 
@@ -256,6 +275,8 @@ impl WorldBuilder {
                 placed.push(i as u32);
             }
         }
+        // Hits have tolerances, and so have these.
+        let benders = self.benders.iter().map(|&b| frame.widened(b)).collect();
         let mut points = self.points;
         points.shrink_to_fit();
         World {
@@ -273,7 +294,7 @@ impl WorldBuilder {
             ranks: self.ranks,
             placed,
             placements: self.placements,
-            bends: self.bends,
+            benders,
             vector: Vector::detect(),
         }
     }

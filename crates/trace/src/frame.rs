@@ -40,8 +40,13 @@ impl Frame {
         Self { centre, bounds: grown(bounds, 2.0 * tolerance), tolerance }
     }
 
+    /// A box with room for the tolerances of hits in it.
+    pub(crate) fn widened(&self, b: Bounds) -> Bounds {
+        grown(b, self.tolerance)
+    }
+
     /// The box of one surface in the tree.
     pub(crate) fn child(&self, b: Bounds) -> Box32 {
-        Box32::around(&grown(b, self.tolerance), self.centre)
+        Box32::around(&self.widened(b), self.centre)
     }
 }

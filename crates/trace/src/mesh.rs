@@ -107,6 +107,11 @@ impl Mesh {
         self
     }
 
+    /// True if one of its materials bends light.
+    pub(crate) fn bends(&self) -> bool {
+        self.ranks.iter().any(|r| r.bends)
+    }
+
     fn rank(&self, triangle: u32) -> Rank {
         let material = self.materials.get(triangle as usize).copied().unwrap_or(0);
         self.ranks[material as usize]

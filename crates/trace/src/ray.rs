@@ -41,6 +41,8 @@ pub struct Rank {
     pub modifier: ObjectId,
     /// Surely stops every shadow ray, whatever its direction. Only for opaque surfaces.
     pub blocks: bool,
+    /// Can send shadow rays off their line, or make other surfaces invisible to them (dielectric, antimatter …).
+    pub bends: bool,
 }
 
 /// The nearest surface along a ray.

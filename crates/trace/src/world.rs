@@ -1,5 +1,6 @@
 //! A world: everything an octree holds, ready for rays.
 
+use crate::bounds;
 use crate::facet::Facets;
 use crate::item::{Content, Item};
 use crate::node::{self, NOWHERE, Node, QUADS, TRIANGLES};
@@ -34,7 +35,8 @@ pub struct World {
     /// Items that place something, by placement.
     pub(crate) placed: Vec<u32>,
     pub(crate) placements: u32,
-    pub(crate) bends: bool,
+    /// Around what bends light: a shadow ray that meets none of these boxes goes straight.
+    pub(crate) benders: Vec<Bounds>,
     pub(crate) vector: Option<Vector>,
 }
 
@@ -50,14 +52,14 @@ impl World {
 
     /// What decides the light that comes along `ray` from `target`, a surface of this world, or from infinity.
     ///
-    /// This is the nearest hit, looked at; but in a world where nothing bends light the search ends at the first
+    /// This is the nearest hit, looked at; but where nothing on the line bends light the search ends at the first
     /// surface that surely stops it and is nearer than the target by more than the tolerance of ties, whatever
     /// transparent surfaces may come before.
     pub fn shadow(&self, ray: &Ray, target: Option<ObjectId>) -> Shadow {
         let distance = target.and_then(|t| self.distance(t, ray));
         let bound = distance.map_or(f64::INFINITY, |t| t + EPSILON);
         let blocked_before = match distance {
-            _ if self.bends => f64::NEG_INFINITY,
+            _ if self.benders.iter().any(|b| bounds::meets(b, ray.origin, ray.direction)) => f64::NEG_INFINITY,
             Some(t) => t - EPSILON,
             None => f64::INFINITY,
         };
@@ -109,11 +111,6 @@ impl World {
         self.bounds
     }
 
-    /// True if the builder said that some surface bends light.
-    pub fn bends(&self) -> bool {
-        self.bends
-    }
-
     /// Counts for those who tune: nodes, blocks of triangles, blocks of quadrilaterals, other items.
     pub fn sizes(&self) -> [usize; 4] {
         [self.nodes.len(), self.triangles.len(), self.quads.len(), self.items.len()]
@@ -134,6 +131,7 @@ impl World {
             + held(&self.place_of)
             + held(&self.ranks)
             + held(&self.placed)
+            + held(&self.benders)
     }
 
     /// Uses the scalar walk and leaf tests from now on, as on processors without AVX2. Hits are the same bits.
@@ -147,6 +145,6 @@ impl World {
     pub(crate) fn rank(&self, object: ObjectId) -> Rank {
         let index = object.checked_sub(self.first).and_then(|i| self.rank_of.get(i as usize));
         let rank = index.and_then(|&i| self.ranks.get(i as usize));
-        rank.copied().unwrap_or(Rank { opacity: Opacity::Nothing, modifier: VOID, blocks: false })
+        rank.copied().unwrap_or(Rank { opacity: Opacity::Nothing, modifier: VOID, blocks: false, bends: false })
     }
 }

@@ -17,7 +17,7 @@ fn flipped(z: f64) -> Shape {
 }
 
 fn rank(opacity: Opacity, modifier: ObjectId) -> Rank {
-    Rank { opacity, modifier, blocks: opacity == Opacity::Opaque }
+    Rank { opacity, modifier, blocks: opacity == Opacity::Opaque, bends: false }
 }
 
 const DOWN: Ray = Ray { origin: DVec3::new(0.3, 0.4, 1.0), direction: DVec3::NEG_Z, limit: FAR };
@@ -218,9 +218,8 @@ fn shadows_say_what_nearest_hits_say() {
     let (mut seen, mut early) = ([0; 3], 0);
     for bends in [true, false] {
         let mut b = WorldBuilder::new();
-        b.set_bends(bends);
         for (i, s) in shapes.iter().enumerate() {
-            b.add(i as ObjectId, s, ranks[i]);
+            b.add(i as ObjectId, s, Rank { bends, ..ranks[i] });
         }
         let world = b.build().unwrap();
         for k in 0..30_000 {
@@ -232,6 +231,7 @@ fn shadows_say_what_nearest_hits_say() {
             match (got, expected) {
                 (Shadow::Blocked(blocker), Shadow::Other(first)) => {
                     // Ended early: the blocker must be behind the first hit and before the target.
+                    // A ray that meets a bender first sees it, whatever stops it behind.
                     assert!(!bends);
                     let t = world.distance(blocker, &ray).unwrap();
                     assert!(ranks[blocker as usize].blocks && t >= first.distance);

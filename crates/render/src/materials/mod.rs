@@ -103,9 +103,9 @@ impl Material {
         }
     }
 
-    /// True if it changes the direction of shadow rays.
+    /// True if it changes the direction of shadow rays, or what they see behind it.
     pub(crate) fn bends(&self) -> bool {
-        matches!(self, Self::Dielectric(_))
+        matches!(self, Self::Dielectric(_) | Self::Antimatter(_))
     }
 
     /// True for stand-ins that only scattered light sees.

@@ -41,8 +41,8 @@ pub(crate) struct Modifiers {
     has_material: Vec<bool>,
     /// Modifiers that surely stop every shadow ray.
     blocks: Vec<bool>,
-    /// True if some material bends rays on their way to a source.
-    pub(crate) bends: bool,
+    /// Modifiers that may send shadow rays off their line, or hide other surfaces from them.
+    bends: Vec<bool>,
 }
 
 impl Modifiers {
@@ -55,7 +55,7 @@ impl Modifiers {
             opacity: vec![Opacity::Nothing; last],
             has_material: vec![false; last],
             blocks: vec![false; last],
-            bends: false,
+            bends: vec![false; last],
         };
         let mut compiler = crate::patterns::Compiler::new(scene, environment)?;
         for id in 0..last as ObjectId {
@@ -103,11 +103,13 @@ impl Modifiers {
     /// Finds the opacity class of a chain that starts at `id`; its links are already there.
     fn classify(&mut self, scene: &Scene, id: ObjectId) {
         let link = self.links[id as usize];
+        self.bends[id as usize] = match &self.nodes[link.node as usize] {
+            Node::Material(m) => m.bends(),
+            Node::Mixture(m) => [m.sides[0], m.sides[1], link.next].into_iter().any(|id| self.bends(id)),
+            _ => self.bends(link.next),
+        };
         let (opacity, blocks) = match &self.nodes[link.node as usize] {
-            Node::Material(m) => {
-                self.bends |= m.bends();
-                (m.opacity(), m.blocks())
-            }
+            Node::Material(m) => (m.opacity(), m.blocks()),
             Node::Mixture(m) if m.sides.iter().any(|&side| self.has_material(side)) => (Opacity::Opaque, false),
             Node::Unusable(_) => match scene.object(link.definition).kind.class() {
                 Class::Material | Class::Mixture => (Opacity::Opaque, false),
@@ -134,10 +136,14 @@ impl Modifiers {
                 let Some(name) = scene.string_bytes(id, name) else { continue };
                 if let Some(m) = scene.modifier_before(name, id) {
                     self.blocks[m as usize] = false;
-                    self.bends = true;
                 }
             }
         }
+    }
+
+    /// True if surfaces of this modifier may send shadow rays off their line, or hide others from them.
+    pub(crate) fn bends(&self, id: ObjectId) -> bool {
+        id != VOID && self.bends[id as usize]
     }
 
     /// What a modifier does, the primitive that says so, and the modifier that follows.

@@ -39,7 +39,6 @@ fn build_range(
     shared: &mut Shared,
 ) -> Result<World, Error> {
     let mut builder = WorldBuilder::new();
-    builder.set_bends(modifiers.bends);
     for id in range {
         let object = scene.object(id);
         let rank = rank(modifiers, object.modifier);
@@ -84,7 +83,12 @@ fn build_range(
 }
 
 fn rank(modifiers: &Modifiers, modifier: ObjectId) -> Rank {
-    Rank { opacity: modifiers.opacity(modifier), modifier, blocks: modifiers.blocks(modifier) }
+    Rank {
+        opacity: modifiers.opacity(modifier),
+        modifier,
+        blocks: modifiers.blocks(modifier),
+        bends: modifiers.bends(modifier),
+    }
 }
 
 /// A mesh file's triangles in the tracer's terms.

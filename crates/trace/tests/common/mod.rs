@@ -53,7 +53,7 @@ pub(crate) fn shape(kind: Kind, reals: &[f64]) -> Shape {
 
 /// Opaque, all with the same modifier.
 pub(crate) fn plain(modifier: ObjectId) -> Rank {
-    Rank { opacity: Opacity::Opaque, modifier, blocks: true }
+    Rank { opacity: Opacity::Opaque, modifier, blocks: true, bends: false }
 }
 
 /// A world of these shapes, numbered from 0.
