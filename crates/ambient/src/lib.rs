@@ -47,6 +47,7 @@ pub use cache::{Cache, Statistics};
 pub use codec::{Layout, RECORD_BYTES};
 pub use file::{AmbientFile, Contents, FORMAT, FileError, Opened, Opening, PATIENCE, Reuse, scan, scan_header};
 pub use file::{Comparison, Fingerprint, Gravity, Mark, MarkLine, fingerprint_lines};
+pub use file::{Segment, missing, remove_done, segments};
 pub use hemisphere::Hemisphere;
 pub use params::{ASSUMED_REFLECTANCE, Limits, Params};
 pub use record::Record;

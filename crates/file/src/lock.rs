@@ -8,6 +8,9 @@ use rustix::fs::{FlockOperation, fcntl_lock};
 use rustix::io::{Errno, retry_on_intr};
 use std::fs::File;
 use std::io;
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
 
 /// Who may hold the lock at the same time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,11 +48,7 @@ pub struct FileLock<'f> {
 impl<'f> FileLock<'f> {
     /// Waits until the lock is granted; interruptions by signals do not end the wait.
     pub fn acquire(file: &'f File, mode: LockMode) -> Result<Self, LockError> {
-        let operation = match mode {
-            LockMode::Shared => FlockOperation::LockShared,
-            LockMode::Exclusive => FlockOperation::LockExclusive,
-        };
-        request(file, operation).map(|()| Self { file })
+        request(file, operation(mode)).map(|()| Self { file })
     }
 
     /// Takes the lock if no other process stands in the way; `None` if one does.
@@ -80,6 +79,14 @@ impl Drop for FileLock<'_> {
     }
 }
 
+/// What waits for a lock.
+fn operation(mode: LockMode) -> FlockOperation {
+    match mode {
+        LockMode::Shared => FlockOperation::LockShared,
+        LockMode::Exclusive => FlockOperation::LockExclusive,
+    }
+}
+
 fn request(file: &File, operation: FlockOperation) -> Result<(), LockError> {
     retry_on_intr(|| fcntl_lock(file, operation)).map_err(classify)
 }
@@ -91,6 +98,57 @@ fn classify(error: Errno) -> LockError {
         Errno::NOLCK => LockError::Unavailable(source),
         Errno::DEADLK => LockError::Deadlock(source),
         _ => LockError::Other(source),
+    }
+}
+
+/// How a request for a lock stands between the thread that makes it and the one that waits.
+#[derive(Debug)]
+enum Request {
+    Pending,
+    Answered(Result<(), LockError>),
+    /// Nobody waits any more: a lock granted now is given back.
+    Abandoned,
+}
+
+impl<'f> FileLock<'f> {
+    /// Waits for the lock, but no longer than `patience`; `None` if the time has run out.
+    ///
+    /// The request is made in a thread of its own: on a network file system whose lock service is gone even requests
+    /// that should not wait do. That thread is left behind if it hangs, with the file open; should the lock be granted
+    /// after all, it is released at once. Do not ask for locks of this file again after `None`.
+    pub fn acquire_within(file: &'f Arc<File>, mode: LockMode, patience: Duration) -> Result<Option<Self>, LockError> {
+        let operation = operation(mode);
+        Ok(wait_for(file, patience, move |file| request(file, operation))?.map(|()| Self { file }))
+    }
+}
+
+/// Makes a request in a thread of its own and waits for its end.
+fn wait_for(
+    file: &Arc<File>,
+    patience: Duration,
+    ask: impl FnOnce(&File) -> Result<(), LockError> + Send + 'static,
+) -> Result<Option<()>, LockError> {
+    let state = Arc::new((Mutex::new(Request::Pending), Condvar::new()));
+    let (shared, theirs) = (Arc::clone(file), Arc::clone(&state));
+    let work = move || {
+        let outcome = ask(&shared);
+        let mut state = theirs.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if matches!(*state, Request::Abandoned) {
+            if outcome.is_ok() {
+                let _ = request(&shared, FlockOperation::Unlock);
+            }
+        } else {
+            *state = Request::Answered(outcome);
+            theirs.1.notify_one();
+        }
+    };
+    thread::Builder::new().name("lock".into()).spawn(work).map_err(LockError::Other)?;
+    let guard = state.0.lock().unwrap_or_else(PoisonError::into_inner);
+    let waiting = |state: &mut Request| matches!(state, Request::Pending);
+    let (mut guard, _) = state.1.wait_timeout_while(guard, patience, waiting).unwrap_or_else(PoisonError::into_inner);
+    match std::mem::replace(&mut *guard, Request::Abandoned) {
+        Request::Answered(outcome) => outcome.map(Some),
+        Request::Pending | Request::Abandoned => Ok(None),
     }
 }
 
@@ -132,6 +190,29 @@ mod tests {
         assert_eq!(seen_by_another_process(file.path()), "shared true exclusive false");
         drop(lock);
         assert_eq!(seen_by_another_process(file.path()), "shared true exclusive true");
+    }
+
+    #[test]
+    fn waiting_ends_with_patience_and_a_late_grant_is_given_back() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let shared = Arc::new(file.reopen().unwrap());
+        let lock = FileLock::acquire_within(&shared, LockMode::Exclusive, Duration::from_secs(60)).unwrap();
+        assert_eq!(seen_by_another_process(file.path()), "shared false exclusive false");
+        drop(lock.expect("nobody else wants it"));
+        // A request that hangs, and is granted after all.
+        let (go, wait) = std::sync::mpsc::channel::<()>();
+        let outcome = wait_for(&shared, Duration::from_millis(50), move |file| {
+            let _ = wait.recv();
+            request(file, FlockOperation::LockExclusive)
+        });
+        assert!(matches!(outcome, Ok(None)));
+        drop(go);
+        while Arc::strong_count(&shared) > 1 {
+            thread::sleep(Duration::from_millis(5));
+        }
+        assert_eq!(seen_by_another_process(file.path()), "shared true exclusive true");
+        let refused = wait_for(&shared, Duration::from_secs(60), |_| Err(classify(Errno::NOLCK)));
+        assert!(matches!(refused, Err(LockError::Unavailable(_))));
     }
 
     #[test]

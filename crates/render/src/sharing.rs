@@ -26,6 +26,8 @@ pub struct Store<'a> {
 pub(crate) struct Sharing {
     file: AmbientFile,
     handed: usize,
+    /// True if the file could not be written, and that has been told.
+    trouble: bool,
 }
 
 impl Renderer {
@@ -38,28 +40,45 @@ impl Renderer {
         cache.quantise(true);
         cache.load(opened.records);
         let handed = cache.records().len();
-        self.sharing = opened.file.map(|file| Sharing { file, handed });
+        self.sharing = opened.file.map(|file| Sharing { file, handed, trouble: false });
         Ok(())
     }
 
     /// Hands records computed since the last call to the ambient file, and takes in those of others.
+    ///
+    /// A file that cannot be written is no reason to lose a picture: the records wait, a warning tells, and what is
+    /// still waiting in the end is an error then.
     pub(crate) fn exchange(&mut self, notify: &dyn Notify, last: bool) -> Result<(), Error> {
         let Some(mut sharing) = self.sharing.take() else { return Ok(()) };
         let records = self.cache().records();
-        let mut foreign = sharing.file.append(&records[sharing.handed..], notify);
+        let mut outcome = sharing.file.append(&records[sharing.handed..], notify);
         sharing.handed = records.len();
-        if last && let Ok(mut first) = foreign {
-            foreign = sharing.file.sync(notify).map(|more| {
+        if last && let Ok(mut first) = outcome {
+            outcome = sharing.file.sync(notify).map(|more| {
                 first.extend(more);
                 first
             });
         }
-        let foreign = foreign.map_err(|e| failed(&e))?;
-        if !foreign.is_empty() {
-            self.cache_mut().load(foreign);
-            sharing.handed = self.cache().records().len();
+        match outcome {
+            Ok(foreign) => {
+                if !foreign.is_empty() {
+                    self.cache_mut().load(foreign);
+                    sharing.handed = self.cache().records().len();
+                }
+                sharing.trouble = false;
+            }
+            Err(e) if last => return Err(failed(&e)),
+            Err(e) => {
+                if !std::mem::replace(&mut sharing.trouble, true) {
+                    notify.warn(&format!("{e}; they are kept in memory"));
+                }
+            }
         }
-        self.sharing = Some(sharing);
+        if last {
+            sharing.file.close();
+        } else {
+            self.sharing = Some(sharing);
+        }
         Ok(())
     }
 

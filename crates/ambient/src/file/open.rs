@@ -3,14 +3,16 @@
 use super::error::FileError;
 use super::reuse::{Opening, Reuse, Verdict};
 use super::scan::{Contents, FORMAT, scan};
-use super::share::{AmbientFile, cut, io_error, lock, read_from, skipped};
+use super::segment::{has_segments, missing, remove_done, segments};
+use super::share::{AmbientFile, Locks, Spare, cut, io_error, lock, read_from, skipped};
 use crate::codec::Layout;
 use crate::record::Record;
 use ambit_base::Notify;
-use ambit_file::{Header, LockMode};
+use ambit_file::{Header, LockMode, os_text};
 use std::fs::File;
-use std::io::{ErrorKind, Write};
-use std::path::Path;
+use std::io::{ErrorKind, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// How often an empty file is looked at again: its creator is about to write the header.
@@ -62,60 +64,109 @@ impl Entry<'_> {
         }
         if self.opening.reuse == Reuse::ReadOnly {
             let file = File::open(path).map_err(io_error("open", &self.name))?;
-            return self.read_only(&file);
+            return self.read_only(&Arc::new(file));
         }
         let failed = |source| io_error("open", &self.name)(source);
         let mut empty = 0;
         loop {
             match File::options().read(true).write(true).open(path) {
                 Ok(file) => {
+                    let file = Arc::new(file);
                     if let Some(found) = self.existing(&file)? {
                         return Ok(self.taken(found, file));
                     }
-                    // Nothing there yet: somebody creates it.
+                    // Nothing there yet: somebody creates it, or was killed doing so.
                     empty += 1;
                     if empty >= TRIES {
-                        return Err(self.incompatible("the file is empty"));
+                        return self.begin(file);
                     }
                     drop(file);
                     std::thread::sleep(PAUSE);
                 }
                 Err(e) if e.kind() == ErrorKind::NotFound => {
-                    match File::options().read(true).write(true).create_new(true).open(path) {
-                        Ok(file) => return self.create(file),
-                        // Somebody was faster.
-                        Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
-                        Err(e) => return Err(failed(e)),
+                    if let Some(opened) = self.create()? {
+                        return Ok(opened);
                     }
+                    // Somebody was faster.
                 }
                 Err(e) if matches!(e.kind(), ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem) => {
                     let file = File::open(path).map_err(failed)?;
-                    return self.read_only(&file);
+                    return self.read_only(&Arc::new(file));
                 }
                 Err(e) => return Err(failed(e)),
             }
         }
     }
 
-    /// Writes the header of a new file.
-    fn create(&self, file: File) -> Result<Opened, FileError> {
-        let bytes = self.head();
-        let lock = lock(&file, LockMode::Exclusive, &self.name, self.notify)?;
-        let locks = lock.is_some();
-        let written = (&file).write_all(&bytes);
+    /// Creates the file; `None` if it is there after all.
+    ///
+    /// It is written under another name and linked to its own, so that nobody ever sees it without its header.
+    fn create(&self) -> Result<Option<Opened>, FileError> {
+        let mut aside = self.path.as_os_str().to_owned();
+        aside.push(format!(".new-{}", self.opening.owner));
+        let aside = PathBuf::from(aside);
+        let open = |path: &Path| File::options().read(true).write(true).create_new(true).open(path);
+        // A process of this name is gone: what it left is in the way.
+        let _ = std::fs::remove_file(&aside);
+        let file = open(&aside).map_err(io_error("open", &self.name))?;
+        let linked = (&file).write_all(&self.head(None)).and_then(|()| std::fs::hard_link(&aside, self.path));
+        let _ = std::fs::remove_file(&aside);
+        let full = [ErrorKind::StorageFull, ErrorKind::QuotaExceeded, ErrorKind::FileTooLarge];
+        match linked {
+            Ok(()) => self.new_file(Arc::new(file)).map(Some),
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => Ok(None),
+            Err(e) if full.contains(&e.kind()) => Err(io_error("write", &self.name)(e)),
+            // No links here.
+            Err(_) => match open(self.path) {
+                Ok(file) => self.begin(Arc::new(file)).map(Some),
+                Err(e) if e.kind() == ErrorKind::AlreadyExists => Ok(None),
+                Err(e) => Err(io_error("open", &self.name)(e)),
+            },
+        }
+    }
+
+    /// Writes the header of a file that is empty.
+    fn begin(&self, file: Arc<File>) -> Result<Opened, FileError> {
+        let lock = lock(&file, LockMode::Exclusive, self.opening.patience, &self.name, self.notify)?;
+        if file.metadata().map_err(io_error("read", &self.name))?.len() > 0 {
+            drop(lock);
+            return self.open();
+        }
+        let written = (&*file).write_all(&self.head(None));
+        if written.is_err() {
+            let _ = file.set_len(0);
+        }
         drop(lock);
         written.map_err(io_error("write", &self.name))?;
-        let start = bytes.len() as u64;
-        let name = self.name.clone();
-        let file = AmbientFile { file, name, layout: Layout::CURRENT, start, end: start, locks, waiting: Vec::new() };
+        self.new_file(file)
+    }
+
+    /// A file that has but a header, just written.
+    fn new_file(&self, file: Arc<File>) -> Result<Opened, FileError> {
+        // Without locks this process, having created the file, writes to it, and the others beside it.
+        let lock = lock(&file, LockMode::Shared, self.opening.patience, &self.name, self.notify)?;
+        let locks = if lock.is_some() { Locks::Within(self.opening.patience) } else { Locks::Alone };
+        drop(lock);
+        let head = self.head(None);
+        let start = head.len() as u64;
+        let (name, spare) = (self.name.clone(), self.spare(head));
+        let layout = Layout::CURRENT;
+        let file = AmbientFile { file, name, layout, start, end: start, locks, waiting: Vec::new(), spare };
         Ok(Opened { records: Vec::new(), file: Some(file) })
     }
 
-    /// What a new file begins with.
-    fn head(&self) -> Vec<u8> {
+    fn spare(&self, head: Vec<u8>) -> Spare {
+        Spare { path: self.path.to_owned(), owner: self.opening.owner.to_owned(), head, segment: None }
+    }
+
+    /// What a new file begins with, or a segment of the file that has this header.
+    fn head(&self, main: Option<&Header>) -> Vec<u8> {
         let mut header = Header::new();
         header.extend(self.opening.header);
-        header.extend(self.opening.fingerprint.map(super::Fingerprint::lines).unwrap_or_default());
+        match main {
+            Some(main) => header.extend(super::fingerprint_lines(main)),
+            None => header.extend(self.opening.fingerprint.map(super::Fingerprint::lines).unwrap_or_default()),
+        }
         header.push(SPLITS);
         header.push("NCOMP=3");
         header.push(format!("FORMAT={FORMAT}"));
@@ -127,33 +178,58 @@ impl Entry<'_> {
     }
 
     /// Reads a file that can be written; `None` if it is still empty.
-    fn existing(&self, file: &File) -> Result<Option<Existing>, FileError> {
+    fn existing(&self, file: &Arc<File>) -> Result<Option<Existing>, FileError> {
         let name = &self.name;
         let mut mode = LockMode::Shared;
         loop {
-            let lock = lock(file, mode, name, self.notify)?;
+            let lock = lock(file, mode, self.opening.patience, name, self.notify)?;
             let bytes = read_from(file, 0).map_err(io_error("read", name))?;
             if bytes.is_empty() {
                 return Ok(None);
             }
-            let contents = self.understood(&bytes)?;
+            let mut contents = self.understood(&bytes)?;
             let verdict = self.opening.judge(&self.opening.compare(&contents.header), name)?;
-            if contents.torn > 0 && lock.is_some() && matches!(verdict, Verdict::Use(_)) {
-                if mode == LockMode::Shared {
+            let mut end = (bytes.len() - contents.torn) as u64;
+            if matches!(verdict, Verdict::Use(_)) {
+                let changes = contents.torn > 0 || has_segments(self.path);
+                if changes && lock.is_some() && mode == LockMode::Shared {
                     // What looks incomplete may have been so for lack of a lock: look again where nobody else can write.
                     mode = LockMode::Exclusive;
                     continue;
                 }
-                let whole = bytes.len() - contents.torn;
-                file.set_len(whole as u64).map_err(io_error("repair", name))?;
+                if contents.torn > 0 && lock.is_some() {
+                    file.set_len(end).map_err(io_error("repair", name))?;
+                }
+                end = self.merge(&mut contents, lock.is_some().then_some(&**file), end);
             }
-            let end = (bytes.len() - contents.torn) as u64;
             return Ok(Some(Existing { contents, verdict, end, locked: lock.is_some() }));
         }
     }
 
+    /// Takes in the records of segments, and appends them to the file at `end` if it is given; returns where it ends.
+    fn merge(&self, contents: &mut Contents, file: Option<&File>, end: u64) -> u64 {
+        let segments = segments(self.path, contents, self.notify);
+        let (records, bytes) = missing(contents, &segments);
+        contents.records.extend(&records);
+        let Some(mut file) = file else { return end };
+        if !bytes.is_empty() {
+            let written = file.seek(SeekFrom::Start(end)).and_then(|_| file.write_all(&bytes));
+            if let Err(e) = written.and_then(|()| file.sync_data()) {
+                let _ = file.set_len(end);
+                let why = os_text(&e);
+                self.notify.warn(&format!("cannot merge segments into ambient file \"{}\": {why}", self.name));
+                return end;
+            }
+            let (values, files) = (records.len(), segments.len());
+            self.notify
+                .warn(&format!("merged {values} values of {files} segments into ambient file \"{}\"", self.name));
+        }
+        remove_done(&segments);
+        end + bytes.len() as u64
+    }
+
     /// Goes on with a file that was read as its fingerprint allows.
-    fn taken(&self, found: Existing, file: File) -> Opened {
+    fn taken(&self, found: Existing, file: Arc<File>) -> Opened {
         let Existing { contents, verdict, end, locked } = found;
         match verdict {
             Verdict::Leave(list) => self.left(&contents, &list),
@@ -162,12 +238,13 @@ impl Entry<'_> {
                     self.notify.warn(&text);
                 }
                 self.tell_damage(&contents);
+                let spare = self.spare(self.head(Some(&contents.header)));
                 let Contents { layout, start, records, .. } = contents;
                 let (name, start) = (self.name.clone(), start as u64);
-                // Without locks others may be writing: the values are used, nothing is added.
-                let file =
-                    locked.then(|| AmbientFile { file, name, layout, start, end, locks: true, waiting: Vec::new() });
-                Opened { records, file }
+                // Without locks others may be writing: new records will go elsewhere.
+                let locks = if locked { Locks::Within(self.opening.patience) } else { Locks::Broken };
+                let file = AmbientFile { file, name, layout, start, end, locks, waiting: Vec::new(), spare };
+                Opened { records, file: Some(file) }
             }
         }
     }
@@ -196,11 +273,11 @@ impl Entry<'_> {
     }
 
     /// Reads a file that cannot be written, or is not to be.
-    fn read_only(&self, file: &File) -> Result<Opened, FileError> {
-        let lock = lock(file, LockMode::Shared, &self.name, self.notify)?;
+    fn read_only(&self, file: &Arc<File>) -> Result<Opened, FileError> {
+        let lock = lock(file, LockMode::Shared, self.opening.patience, &self.name, self.notify)?;
         let bytes = read_from(file, 0).map_err(io_error("read", &self.name))?;
         drop(lock);
-        let contents = self.understood(&bytes)?;
+        let mut contents = self.understood(&bytes)?;
         match self.opening.judge(&self.opening.compare(&contents.header), &self.name)? {
             Verdict::Leave(list) => Ok(self.left(&contents, &list)),
             Verdict::Use(warning) => {
@@ -208,6 +285,7 @@ impl Entry<'_> {
                     self.notify.warn(&text);
                 }
                 self.tell_damage(&contents);
+                self.merge(&mut contents, None, 0);
                 if self.opening.reuse != Reuse::ReadOnly {
                     let found = contents.records.len();
                     self.notify.warn(&format!("loaded {found} values from read-only ambient file"));
@@ -247,7 +325,11 @@ struct Existing {
 #[cfg(test)]
 impl AmbientFile {
     /// Reads a file as if it could not be written: permissions do not stop the superuser.
-    pub(super) fn open_read_only(file: &File, opening: &Opening<'_>, notify: &dyn Notify) -> Result<Opened, FileError> {
+    pub(super) fn open_read_only(
+        file: &Arc<File>,
+        opening: &Opening<'_>,
+        notify: &dyn Notify,
+    ) -> Result<Opened, FileError> {
         let name = "a.amb".to_owned();
         Entry { path: Path::new("a.amb"), name, opening, notify, beside: false }.read_only(file)
     }

@@ -2,12 +2,16 @@
 
 use super::error::FileError;
 use super::scan::records;
+use super::segment;
 use crate::codec::{Layout, RECORD_BYTES};
 use crate::record::Record;
 use ambit_base::Notify;
 use ambit_file::{FileLock, LockError, LockMode};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
 
 /// Records that wait before they are written: what fits the C library's buffer of 8192 bytes, as in Radiance.
 const BUFFERED: usize = 8192 / RECORD_BYTES;
@@ -15,16 +19,41 @@ const BUFFERED: usize = 8192 / RECORD_BYTES;
 /// An ambient file open for appending. Nothing is written when this is dropped: call [`AmbientFile::sync`] before.
 #[derive(Debug)]
 pub struct AmbientFile {
-    pub(super) file: File,
+    pub(super) file: Arc<File>,
     pub(super) name: String,
     pub(super) layout: Layout,
     /// Where the first record begins.
     pub(super) start: u64,
     /// The end of what has been read or written here.
     pub(super) end: u64,
-    /// False on file systems without locks, where this process created the file and writes alone.
-    pub(super) locks: bool,
+    pub(super) locks: Locks,
     pub(super) waiting: Vec<Record>,
+    /// The segment that takes the place of the file if its lock cannot be had.
+    pub(super) spare: Spare,
+}
+
+/// What is known of the lock of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Locks {
+    /// It works, and is waited for so long.
+    Within(Duration),
+    /// There is none, and none is needed: nobody else writes.
+    Alone,
+    /// It cannot be had, and others may be writing.
+    Broken,
+}
+
+/// What a segment is made of.
+#[derive(Debug)]
+pub(super) struct Spare {
+    /// The ambient file.
+    pub(super) path: PathBuf,
+    /// The name of this process.
+    pub(super) owner: String,
+    /// Header and magic number.
+    pub(super) head: Vec<u8>,
+    /// The segment, once there is one.
+    pub(super) segment: Option<PathBuf>,
 }
 
 impl AmbientFile {
@@ -39,16 +68,34 @@ impl AmbientFile {
     /// After an error the records still wait: a later call may succeed.
     pub fn sync(&mut self, notify: &dyn Notify) -> Result<Vec<Record>, FileError> {
         let mode = if self.waiting.is_empty() { LockMode::Shared } else { LockMode::Exclusive };
-        let lock = if self.locks { lock(&self.file, mode, &self.name, notify)? } else { None };
-        let length = self.file.metadata().map_err(io_error("read", &self.name))?.len();
-        if length < self.start {
-            return Err(FileError::Truncated { file: self.name.clone() });
+        let main = Arc::clone(&self.file);
+        let mut held = None;
+        if let Locks::Within(patience) = self.locks {
+            held = lock(&main, mode, patience, &self.name, notify)?;
+            if held.is_none() {
+                self.locks = Locks::Broken;
+            }
         }
+        let mut length = main.metadata().map_err(io_error("read", &self.name))?.len();
+        if length < self.start && self.locks != Locks::Broken {
+            // What has been written is gone; what comes is safe elsewhere.
+            notify.warn(&FileError::Truncated { file: self.name.clone() }.to_string());
+            self.locks = Locks::Broken;
+        }
+        if self.locks == Locks::Broken {
+            drop(held.take());
+            if self.waiting.is_empty() {
+                return Ok(Vec::new());
+            }
+            self.retreat(notify)?;
+            length = self.start;
+        }
+        let file = Arc::clone(&self.file);
         if length < self.end {
             notify.warn(&format!("ambient file \"{}\" was shortened by another program", self.name));
             self.end = length - (length - self.start) % RECORD_BYTES as u64;
         }
-        let bytes = read_from(&self.file, self.end).map_err(io_error("read", &self.name))?;
+        let bytes = read_from(&file, self.end).map_err(io_error("read", &self.name))?;
         let (foreign, damaged, torn) = records(&bytes, self.layout);
         if damaged > 0 {
             notify.warn(&skipped(damaged, &self.name));
@@ -61,18 +108,51 @@ impl AmbientFile {
             }
             let written = self.write(end, torn > 0);
             if let Err(source) = written {
-                // What is whole stays, what is not goes; the records wait for another try.
-                let _ = self.file.set_len(end);
+                // What is whole stays, what is not goes; the other records wait for another try.
+                let length = file.metadata().map_or(end, |m| m.len());
+                let whole = ((length.saturating_sub(end)) as usize / RECORD_BYTES).min(self.waiting.len());
+                self.end = end + (whole * RECORD_BYTES) as u64;
+                let _ = file.set_len(self.end);
+                self.waiting.drain(..whole);
                 let (file, records) = (self.name.clone(), self.waiting.len());
                 return Err(FileError::Write { file, records, source });
             }
         }
         self.end = end + (self.waiting.len() * RECORD_BYTES) as u64;
         self.waiting.clear();
-        if let Some(lock) = lock {
+        if let Some(lock) = held {
             lock.release().map_err(|e| lock_failed(e, &self.name))?;
         }
         Ok(foreign)
+    }
+
+    /// Turns to a segment of the file.
+    fn retreat(&mut self, notify: &dyn Notify) -> Result<(), FileError> {
+        let (file, path) = segment::create(&self.spare.path, &self.spare.owner)
+            .map_err(io_error("create a segment of", &self.name))?;
+        if let Err(source) = (&file).write_all(&self.spare.head) {
+            let _ = std::fs::remove_file(&path);
+            let (file, records) = (self.name.clone(), self.waiting.len());
+            return Err(FileError::Write { file, records, source });
+        }
+        let shown = path.to_string_lossy().into_owned();
+        notify.warn(&format!("values go to \"{shown}\", and to \"{}\" when it can be locked again", self.name));
+        self.file = Arc::new(file);
+        self.name = shown;
+        self.layout = segment::LAYOUT;
+        self.start = self.spare.head.len() as u64;
+        self.end = self.start;
+        self.locks = Locks::Alone;
+        self.spare.segment = Some(path);
+        Ok(())
+    }
+
+    /// Says that nothing more will be written; what waits is lost, so call [`AmbientFile::sync`] before.
+    pub fn close(self) {
+        if let Some(path) = self.spare.segment {
+            // Under its old name it is read and merged as well, and only not removed.
+            let _ = std::fs::rename(&path, segment::done(&path));
+        }
     }
 
     /// Writes what waits at `end`, after cutting off what follows.
@@ -84,7 +164,7 @@ impl AmbientFile {
         if truncate {
             self.file.set_len(end)?;
         }
-        let mut file = &self.file;
+        let mut file = &*self.file;
         file.seek(SeekFrom::Start(end))?;
         file.write_all(&bytes)
     }
@@ -92,13 +172,20 @@ impl AmbientFile {
 
 /// A lock, or a warning where the file system has none.
 pub(super) fn lock<'f>(
-    file: &'f File,
+    file: &'f Arc<File>,
     mode: LockMode,
+    patience: Duration,
     name: &str,
     notify: &dyn Notify,
 ) -> Result<Option<FileLock<'f>>, FileError> {
-    match FileLock::acquire(file, mode) {
-        Ok(lock) => Ok(Some(lock)),
+    match FileLock::acquire_within(file, mode, patience) {
+        Ok(Some(lock)) => Ok(Some(lock)),
+        Ok(None) => {
+            let seconds = patience.as_secs_f64();
+            notify
+                .warn(&format!("ambient file \"{name}\" is not shared: its lock was not granted in {seconds} seconds"));
+            Ok(None)
+        }
         Err(e @ (LockError::Unsupported(_) | LockError::Unavailable(_))) => {
             notify.warn(&format!("ambient file \"{name}\" is not shared: {e}"));
             Ok(None)

@@ -211,15 +211,18 @@ fn an_empty_file_is_waited_for() {
     fs::write(&aside, &bytes).unwrap();
     fs::rename(aside, folder.file()).unwrap();
     assert_eq!(waiting.join().unwrap(), batch(0, 3));
+    // Its creator was killed: the file begins anew.
     fs::write(folder.file(), b"").unwrap();
-    let error = try_open(&folder.file(), &Silent).unwrap_err().to_string();
-    assert!(error.contains("bad/incompatible ambient file") && error.contains("empty"), "{error}");
+    let mut file = open(&folder.file()).file.unwrap();
+    file.append(&batch(7, 1), &Silent).unwrap();
+    file.sync(&Silent).unwrap();
+    assert_eq!(open(&folder.file()).records, batch(7, 1));
 }
 
 #[test]
 fn a_read_only_file_is_used_with_a_warning() {
     let folder = Folder::filled(5);
-    let file = fs::File::open(folder.file()).unwrap();
+    let file = fs::File::open(folder.file()).unwrap().into();
     let heard = Heard::default();
     // Permissions do not stop the superuser, so the way after the refusal is taken directly.
     let opened = AmbientFile::open_read_only(&file, &plain(&[]), &heard).unwrap();
@@ -254,12 +257,12 @@ fn a_full_disk_loses_nothing() {
     let folder = Folder::filled(2);
     let mut file = open(&folder.file()).file.unwrap();
     file.waiting = batch(10, 3);
-    let disk = std::mem::replace(&mut file.file, fs::File::options().write(true).open(full).unwrap());
+    let disk = std::mem::replace(&mut file.file, fs::File::options().write(true).open(full).unwrap().into());
     let error = file.write(0, false).unwrap_err();
     assert_eq!(error.kind(), std::io::ErrorKind::StorageFull);
     // A descriptor that cannot be written fails in the same place; the records wait.
-    file.file = fs::File::open(folder.file()).unwrap();
-    file.locks = false;
+    file.file = fs::File::open(folder.file()).unwrap().into();
+    file.locks = super::share::Locks::Alone;
     let error = file.sync(&Silent).unwrap_err().to_string();
     assert!(error.starts_with("cannot write 3 records to ambient file"), "{error}");
     file.file = disk;
