@@ -20,9 +20,19 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &["ambit-trace", "ambit-ambient", "ambit-octree", "ambit-cal", "ambit-scene", "ambit-file", "ambit-base"],
     ),
     ("ambit-cli", &["ambit-render", "ambit-file", "ambit-base"]),
+    ("ambit-measure", &["ambit-file", "ambit-base"]),
     (
         "ambit-tools",
-        &["ambit-cli", "ambit-render", "ambit-octree", "ambit-ambient", "ambit-scene", "ambit-file", "ambit-base"],
+        &[
+            "ambit-cli",
+            "ambit-measure",
+            "ambit-render",
+            "ambit-octree",
+            "ambit-ambient",
+            "ambit-scene",
+            "ambit-file",
+            "ambit-base",
+        ],
     ),
     ("ambit-tests", &[]),
 ];

@@ -4,6 +4,7 @@
 mod colour;
 mod light;
 mod quantity;
+pub mod raderr;
 pub mod rpict;
 pub mod rtrace;
 mod session;

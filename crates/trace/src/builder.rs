@@ -205,8 +205,12 @@ impl WorldBuilder {
             Some(n) => self.placements = n,
             None => self.overflow = true,
         }
-        let rank =
-            over.unwrap_or(Rank { opacity: crate::Opacity::Nothing, modifier: ambit_scene::VOID, blocks: false, bends: false });
+        let rank = over.unwrap_or(Rank {
+            opacity: crate::Opacity::Nothing,
+            modifier: ambit_scene::VOID,
+            blocks: false,
+            bends: false,
+        });
         self.push(Item::Placed(Box::new(Placed { object, transform, content, over, placement })), b, rank);
     }
 
