@@ -72,7 +72,7 @@ fn pictures_of_two_programs() {
     assert!(records("fine") > records("coarse") && records("coarse") > 0, "{table}");
     assert!(error("fine") < error("coarse") && error("coarse") < 50.0, "{table}");
     assert!(row(&table, "fine", "ours")[10].parse::<u64>().unwrap() > 1000, "{table}");
-    assert!(table.contains("at equal RMS error") && table.contains("ours is "), "{table}");
+    assert!(table.contains("at equal RMS error") && table.contains("theirs takes "), "{table}");
     assert!(std::fs::read_to_string(bench.path("box.csv")).unwrap().lines().count() == 5);
     assert!(std::fs::read(bench.path("box.png")).unwrap().starts_with(b"\x89PNG"));
     assert!(std::fs::read_to_string(bench.path("box.svg")).unwrap().contains("</svg>"));

@@ -126,7 +126,7 @@ pub(crate) fn comparison_text(report: &Report, comparison: &Comparison) -> Strin
         Comparison::None { statement } => format!("{statement}\n"),
         Comparison::Overlap { low, high, mean, range: all, levels } => {
             let mut out = format!(
-                "at equal RMS error, {:.2} to {:.2} %: {first} is {mean:.2} times faster than {second} (geometric mean over the logarithm of error; pairs: {})\n",
+                "at equal RMS error, {:.2} to {:.2} %: {second} takes {mean:.2} times as long as {first} (geometric mean over the logarithm of error; pairs: {})\n",
                 100.0 * low,
                 100.0 * high,
                 range(*all),
