@@ -1,0 +1,203 @@
+//! Damage: found and repaired.
+//!
+//! A record is 67 bytes long, and what makes no sense as a record is damage. Where programs have written over each
+//! other, whole records follow that begin at other places: behind damage the next place is looked for from which several
+//! records in a row make sense.
+
+use crate::store::{Failure, Output, Told, bytes, file, tell};
+use ambit_ambient::{Layout, RECORD_BYTES, Record, missing, remove_done, scan, scan_header, segments};
+use ambit_file::{FileLock, LockMode, os_text};
+use std::collections::HashSet;
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// So many records in a row are no accident.
+const RUN: usize = 2;
+/// How long the lock is waited for.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// What stands in the records' part of a file.
+#[derive(Debug, Default, PartialEq)]
+struct Found {
+    records: Vec<Record>,
+    /// Records that do not begin at a multiple of their length.
+    displaced: usize,
+    /// Records that another is equal to.
+    repeated: usize,
+    /// Bytes that belong to no record, before the last one.
+    damaged: usize,
+    /// Bytes after it.
+    torn: usize,
+}
+
+impl Found {
+    fn of(bytes: &[u8], layout: Layout) -> Self {
+        let mut found = Self::default();
+        let mut known = HashSet::new();
+        let (mut at, mut end) = (0, 0);
+        let record = |at: usize| {
+            let bytes = bytes.get(at..at + RECORD_BYTES)?.try_into().ok()?;
+            Some(layout.decode(bytes)).filter(|r| r.is_plausible() && layout.encode(r) == *bytes)
+        };
+        while at + RECORD_BYTES <= bytes.len() {
+            // In step with the one before a single record is believed.
+            let in_step = at == end || at % RECORD_BYTES == 0;
+            let run = if in_step { 1 } else { RUN.min((bytes.len() - at) / RECORD_BYTES) };
+            match record(at).filter(|_| (1..run).all(|k| record(at + k * RECORD_BYTES).is_some())) {
+                Some(r) => {
+                    found.damaged += at - end;
+                    found.displaced += usize::from(at % RECORD_BYTES != 0);
+                    if known.insert(layout.encode(&r)) {
+                        found.records.push(r);
+                    } else {
+                        found.repeated += 1;
+                    }
+                    at += RECORD_BYTES;
+                    end = at;
+                }
+                None => at += 1,
+            }
+        }
+        found.torn = bytes.len() - end;
+        found
+    }
+
+    fn sound(&self) -> bool {
+        self.displaced == 0 && self.damaged == 0 && self.torn == 0
+    }
+}
+
+/// Tells of every file whether it is sound.
+pub(crate) fn print(files: &[PathBuf]) -> Result<bool, Failure> {
+    let mut fine = true;
+    for path in files {
+        let name = path.display().to_string();
+        let bytes = bytes(path)?;
+        let (text, sound) = match scan(&bytes, &name) {
+            Err(problem) => (problem, false),
+            Ok(contents) => {
+                let f = Found::of(&bytes[contents.start..], contents.layout);
+                let parts = segments(path, &contents, &Told).len();
+                let mut text = format!("{} records", f.records.len());
+                for (count, what) in [
+                    (f.repeated, "repeated"),
+                    (f.displaced, "displaced records"),
+                    (f.damaged, "damaged bytes"),
+                    (f.torn, "bytes of an incomplete record"),
+                    (parts, "segments not merged"),
+                ] {
+                    if count > 0 {
+                        // Writing to memory does not fail.
+                        let _ = write!(text, ", {count} {what}");
+                    }
+                }
+                (text, f.sound())
+            }
+        };
+        fine &= sound;
+        let word = if sound { "sound" } else { "DAMAGED" };
+        crate::store::print(format!("{name}: {word}: {text}\n").as_bytes())?;
+    }
+    Ok(fine)
+}
+
+/// Keeps all that makes sense.
+pub(crate) fn repair(path: &Path, output: &Output) -> Result<(), Failure> {
+    let name = path.display().to_string();
+    let failed = |e: io::Error| Failure::Text(format!("cannot repair \"{name}\": {}", os_text(&e)));
+    let in_place = output.output.is_none();
+    let handle = Arc::new(File::options().read(true).write(in_place).open(path).map_err(failed)?);
+    let mode = if in_place { LockMode::Exclusive } else { LockMode::Shared };
+    let lock = FileLock::acquire_within(&handle, mode, PATIENCE);
+    if in_place && !matches!(lock, Ok(Some(_))) {
+        return Err(format!("\"{name}\" cannot be locked; repair it into another file (-o)").into());
+    }
+    let mut bytes = Vec::new();
+    (&*handle).read_to_end(&mut bytes).map_err(failed)?;
+    let (header, layout, start) = scan_header(&bytes, &name)?;
+    let mut contents = scan(&bytes, &name)?;
+    let found = Found::of(&bytes[start..], layout);
+    contents.records = found.records;
+    let parts = segments(path, &contents, &Told);
+    let (more, _) = missing(&contents, &parts);
+    contents.records.extend(more);
+    let repaired = file(&header, layout, &contents.records);
+    tell(&format!("{name}: {} records kept, {} bytes dropped", contents.records.len(), found.damaged + found.torn));
+    if !in_place {
+        return output.write(&repaired);
+    }
+    let records = &repaired[repaired.len() - contents.records.len() * RECORD_BYTES..];
+    if records != &bytes[start..] {
+        let mut out = &*handle;
+        out.seek(SeekFrom::Start(start as u64)).map_err(failed)?;
+        out.write_all(records).map_err(failed)?;
+        out.set_len((start + records.len()) as u64).map_err(failed)?;
+        out.sync_data().map_err(failed)?;
+    }
+    remove_done(&parts);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ambit_base::{DVec3, Rgb};
+
+    fn record(k: u32) -> Record {
+        Record {
+            position: DVec3::new(f64::from(k), 0.5, 3.0),
+            normal: DVec3::Z,
+            u: DVec3::X,
+            level: 1,
+            weight: 0.5,
+            radii: [0.5, 1.0],
+            gradient: [0.25; 2],
+            rotation: [0.125; 2],
+            corral: k,
+            value: Rgb::ONE,
+        }
+        .quantised()
+    }
+
+    fn encoded(numbers: std::ops::Range<u32>) -> Vec<u8> {
+        numbers.flat_map(|k| Layout::V561.encode(&record(k))).collect()
+    }
+
+    fn numbers(found: &Found) -> Vec<u32> {
+        found.records.iter().map(|r| r.corral).collect()
+    }
+
+    #[test]
+    fn a_sound_file_is_sound() {
+        let found = Found::of(&encoded(1..6), Layout::V561);
+        assert!(found.sound());
+        assert_eq!(numbers(&found), [1, 2, 3, 4, 5]);
+    }
+
+    #[test]
+    fn displaced_records_are_found_behind_the_damage() {
+        // A block written 37 bytes too late over what was there.
+        let mut bytes = encoded(1..10);
+        let block = encoded(20..24);
+        let at = 3 * RECORD_BYTES + 37;
+        bytes.splice(at.., block);
+        bytes.extend([1, 2, 3]);
+        let found = Found::of(&bytes, Layout::V561);
+        assert_eq!(numbers(&found), [1, 2, 3, 20, 21, 22, 23]);
+        assert_eq!((found.displaced, found.damaged, found.torn), (4, 37, 3));
+        assert!(!found.sound());
+    }
+
+    #[test]
+    fn a_damaged_record_and_a_repeated_one_cost_themselves() {
+        let mut bytes = [encoded(1..5), encoded(2..3)].concat();
+        bytes[RECORD_BYTES * 2..RECORD_BYTES * 3].fill(0xff);
+        let found = Found::of(&bytes, Layout::V561);
+        assert_eq!(numbers(&found), [1, 2, 4]);
+        assert_eq!((found.damaged, found.repeated, found.displaced), (RECORD_BYTES, 1, 0));
+    }
+}

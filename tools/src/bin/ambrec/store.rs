@@ -1,0 +1,110 @@
+//! Ambient files in and out.
+
+use ambit_ambient::{Contents, FORMAT, Layout, RECORD_BYTES, Record, scan};
+use ambit_file::{FileLock, Header, LockMode, Replacement, os_text};
+use clap::Args;
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// How long the lock of a file is waited for.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Why the work ends early.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// What to tell the user.
+    Text(String),
+    /// Nobody reads the output any more.
+    Pipe,
+}
+
+impl From<String> for Failure {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+/// Where the result goes.
+#[derive(Args)]
+pub(crate) struct Output {
+    /// The file to write; it appears when it is complete. Standard output unless given.
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+impl Output {
+    /// Writes all at once.
+    pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
+        let Some(path) = &self.output else { return print(bytes) };
+        let failed = |e: io::Error| Failure::Text(format!("cannot write \"{}\": {}", path.display(), os_text(&e)));
+        let mut out = Replacement::create(path).map_err(failed)?;
+        out.write_all(bytes).map_err(failed)?;
+        out.commit().map_err(failed)
+    }
+}
+
+/// Prints on standard output.
+pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    out.write_all(bytes).and_then(|()| out.flush()).map_err(|e| match e.kind() {
+        io::ErrorKind::BrokenPipe => Failure::Pipe,
+        _ => Failure::Text(format!("cannot write output: {}", os_text(&e))),
+    })
+}
+
+/// The bytes of a file, read under its lock if that can be had.
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+    let failed = |e: io::Error| Failure::Text(format!("cannot read \"{}\": {}", path.display(), os_text(&e)));
+    let file = Arc::new(File::open(path).map_err(failed)?);
+    if !file.metadata().map_err(failed)?.is_file() {
+        return Err(Failure::Text(format!("\"{}\" is not a regular file", path.display())));
+    }
+    let _lock = FileLock::acquire_within(&file, LockMode::Shared, PATIENCE);
+    let mut bytes = Vec::new();
+    (&*file).read_to_end(&mut bytes).map_err(failed)?;
+    Ok(bytes)
+}
+
+/// The contents of a file.
+pub(crate) fn contents(path: &Path) -> Result<Contents, Failure> {
+    let name = path.display().to_string();
+    scan(&bytes(path)?, &name)
+        .map_err(|problem| Failure::Text(format!("bad/incompatible ambient file \"{name}\": {problem}")))
+}
+
+/// An ambient file of these records, with the lines of `header` that still hold.
+pub(crate) fn file(header: &Header, layout: Layout, records: &[Record]) -> Vec<u8> {
+    let mut lines = Header::empty();
+    let dropped = [&b"NCOMP="[..], b"WAVELENGTH_SPLITS="];
+    lines.extend(header.lines_without_format().filter(|l| !dropped.iter().any(|d| l.starts_with(d))));
+    if layout == Layout::V561 {
+        lines.extend(header.lines().filter(|l| l.starts_with(b"WAVELENGTH_SPLITS=")));
+        lines.push("NCOMP=3");
+    }
+    lines.push(format!("FORMAT={FORMAT}"));
+    let mut bytes = Vec::with_capacity(1024 + records.len() * RECORD_BYTES);
+    // Writing to memory does not fail.
+    let _ = lines.write(&mut bytes);
+    bytes.extend(layout.magic().to_be_bytes());
+    for record in records {
+        bytes.extend(layout.encode(record));
+    }
+    bytes
+}
+
+/// Tells something on standard error.
+pub(crate) fn tell(text: &str) {
+    let _ = writeln!(io::stderr(), "ambrec: {text}");
+}
+
+/// Warnings of the library.
+pub(crate) struct Told;
+
+impl ambit_base::Notify for Told {
+    fn warn(&self, text: &str) {
+        tell(&format!("warning - {text}"));
+    }
+}
