@@ -201,7 +201,7 @@ impl Cache {
         let jobs = jobs(picks.iter().map(|p| p.plan.len()));
         let sampled = trace(self, sampler, &jobs, |pick, sample| {
             let Pick { query, plan, .. } = &picks[pick];
-            (&queries[*query], plan.direction(sample), plan.child_weight(), plan.stream(sample))
+            (&queries[*query], plan.ray(plan.direction(sample), sample))
         });
         let returned = self.completed(sampler, level, sampled);
         let mut cells: Vec<Cell> = Vec::with_capacity(total);
@@ -254,7 +254,7 @@ impl Cache {
             let Pick { query, plan, .. } = &picks[pick];
             let (cell, k) = wanted[pick][sample];
             let direction = plan.frame().to_world(plan.extra_local(cell, k));
-            (&queries[*query], direction, plan.child_weight(), plan.stream(plan.len() + sample))
+            (&queries[*query], plan.ray(direction, plan.len() + sample))
         });
         let returned = self.completed(sampler, level, sampled);
         let least = least_distance(&self.limits);

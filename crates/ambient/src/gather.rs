@@ -2,8 +2,8 @@
 
 use crate::cache::Cache;
 use crate::parallel::in_order;
-use crate::sampler::{Miss, Query, Sample, Sampler};
-use ambit_base::{DVec3, Rgb, Stream};
+use crate::sampler::{Miss, Query, Sample, SampleRay, Sampler};
+use ambit_base::Rgb;
 
 /// The samples `from..to` of a hemisphere.
 pub(crate) struct Job {
@@ -28,12 +28,12 @@ impl<O> Sampled<O> {
     }
 }
 
-/// Traces the samples of all jobs; `ray` gives the query, direction, weight and stream of a sample of a pick.
+/// Traces the samples of all jobs; `ray` gives the query and the ray of a sample of a pick.
 pub(crate) fn trace<'q, S: Sampler>(
     cache: &Cache,
     sampler: &S,
     jobs: &[Job],
-    ray: impl Fn(usize, usize) -> (&'q Query<S::Origin>, DVec3, f32, Stream) + Sync + Send,
+    ray: impl Fn(usize, usize) -> (&'q Query<S::Origin>, SampleRay) + Sync + Send,
 ) -> Sampled<S::Origin>
 where
     S::Origin: 'q,
@@ -41,9 +41,10 @@ where
     let parts = in_order(jobs.len(), 2, 1, |k| {
         let job = &jobs[k];
         let mut part = Sampled::with_capacity(job.to - job.from);
+        let mut scratch = sampler.scratch();
         for sample in job.from..job.to {
-            let (query, direction, weight, stream) = ray(job.pick, sample);
-            let returned = sampler.sample(cache, query, direction, weight, stream, &mut part.misses);
+            let (query, ray) = ray(job.pick, sample);
+            let returned = sampler.sample(&mut scratch, cache, query, ray, &mut part.misses);
             let index = part.returned.len() as u32;
             part.owners.resize(part.misses.len(), index);
             part.returned.push(returned.map(|s| repair(s, &mut part.repaired)));

@@ -2,6 +2,7 @@
 //! angle (Nusselt analog; Shirley & Chiu 1997 for the concentric map), a random point a cell, a random turn about the normal.
 
 use crate::params::{ASSUMED_REFLECTANCE, Params};
+use crate::sampler::SampleRay;
 use crate::separation::separated;
 use ambit_base::{DVec3, EPSILON, Frame, Stream, square_to_disk};
 use std::f64::consts::TAU;
@@ -33,7 +34,7 @@ pub struct Hemisphere {
     side: u32,
     stream: Stream,
     child_weight: f32,
-    /// Points in the unit square, one a cell, where they have been kept apart; else they are drawn when asked for.
+    /// Points of the unit disk, one a cell, where they have been kept apart; else they are drawn when asked for.
     points: Vec<[f64; 2]>,
 }
 
@@ -88,14 +89,13 @@ impl Hemisphere {
         &self.frame
     }
 
-    /// The random point of a cell in the unit square of the whole grid. Cell `row · side + column`.
-    fn point(&self, cell: usize) -> [f64; 2] {
-        self.points.get(cell).copied().unwrap_or_else(|| cell_point(self.side, cell, self.stream))
-    }
-
-    /// The sample direction of a cell in the frame (x, y tangential, z along the normal, positive), unit length.
+    /// The sample direction of a cell in the frame (x, y tangential, z along the normal, positive), unit length. Cell
+    /// `row · side + column`.
     pub(crate) fn local(&self, cell: usize) -> DVec3 {
-        lift(self.point(cell))
+        match self.points.get(cell) {
+            Some(&point) => raise(point),
+            None => lift(cell_point(self.side, cell, self.stream)),
+        }
     }
 
     /// The sample direction of a cell, unit length, world coordinates.
@@ -107,6 +107,11 @@ impl Hemisphere {
     pub(crate) fn extra_local(&self, cell: usize, k: u32) -> DVec3 {
         let [s, t] = self.stream.split(tag::EXTRA ^ (cell as u64) << 32, k).two();
         lift(in_cell(self.side, cell, s, t))
+    }
+
+    /// The ray of a sample.
+    pub(crate) fn ray(&self, direction: DVec3, sample: usize) -> SampleRay {
+        SampleRay { direction, weight: self.child_weight, stream: self.stream(sample) }
     }
 
     /// The random numbers of a sample's ray.
@@ -136,7 +141,11 @@ pub(crate) fn cell_point(side: u32, cell: usize, stream: Stream) -> [f64; 2] {
 
 /// From the square to the hemisphere.
 fn lift([x, y]: [f64; 2]) -> DVec3 {
-    let [p, q] = square_to_disk(x, y);
+    raise(square_to_disk(x, y))
+}
+
+/// From the disk to the hemisphere.
+fn raise([p, q]: [f64; 2]) -> DVec3 {
     let (p, q) = (p * RIM, q * RIM);
     DVec3::new(p, q, (1.0 - p * p - q * q).max(f64::EPSILON).sqrt())
 }

@@ -51,6 +51,6 @@ pub use file::{Segment, missing, remove_done, segments};
 pub use hemisphere::Hemisphere;
 pub use params::{ASSUMED_REFLECTANCE, Limits, Params};
 pub use record::Record;
-pub use sampler::{Answer, Miss, Query, Sample, Sampler};
+pub use sampler::{Answer, Miss, Query, Sample, SampleRay, Sampler};
 pub use text::TextForm;
 pub use tilt::Tilt;

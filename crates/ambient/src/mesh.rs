@@ -164,7 +164,7 @@ pub(crate) fn rotational(n: usize, points: &[DVec3], values: &[f64]) -> [f64; 2]
     }
     let mut h = [0.0; 2];
     for (cell, (p, v)) in points.iter().zip(values).enumerate() {
-        let rho = p.x.hypot(p.y);
+        let rho = (p.x * p.x + p.y * p.y).sqrt();
         if rho > 0.0 {
             // Outer rings have the larger tangent.
             let tangent = rings[cell / n].max(rings[cell % n]);

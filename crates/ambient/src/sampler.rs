@@ -40,25 +40,41 @@ pub struct Sample {
     pub distance: f64,
 }
 
+/// A hemisphere ray to trace.
+#[derive(Clone, Copy, Debug)]
+pub struct SampleRay {
+    /// Unit length, world coordinates, pointing away from the query.
+    pub direction: DVec3,
+    /// What the ray's weight is multiplied by, beside the medium's extinction.
+    pub weight: f32,
+    /// Its random numbers.
+    pub stream: Stream,
+}
+
 /// Traces rays for the cache.
 pub trait Sampler: Sync {
     /// What a query carries for the sampler.
     type Origin: Copy + Send + Sync;
+    /// What a thread keeps at hand while it traces several samples.
+    type Scratch<'a>
+    where
+        Self: 'a;
 
-    /// The radiance that arrives at the query's position along `direction` (unit, world, pointing away from it).
+    /// This thread's scratch memory; only one is asked for at a time.
+    fn scratch(&self) -> Self::Scratch<'_>;
+
+    /// The radiance that arrives at the query's position along `ray`, which weighs `query.weight × ray.weight × extinction`.
     ///
-    /// `weight` is what the ray's weight is multiplied by, beside the medium's extinction: the ray weighs
-    /// `query.weight × weight × extinction`. Diffuse questions met on the way have level `query.level + 1`; those that
+    /// Diffuse questions met on the way have level `query.level + 1`; those that
     /// `cache` answers are added at once, the others are pushed on `misses`, with coefficients relative to the radiance
     /// returned, and left out of it. None: the ray was refused by the limits of depth or weight. A ray that Russian
     /// roulette ends is not refused: it returns zero radiance. `misses` must be left as found when None is returned.
     fn sample(
         &self,
+        scratch: &mut Self::Scratch<'_>,
         cache: &Cache,
         query: &Query<Self::Origin>,
-        direction: DVec3,
-        weight: f32,
-        stream: Stream,
+        ray: SampleRay,
         misses: &mut Vec<Miss<Self::Origin>>,
     ) -> Option<Sample>;
 

@@ -13,10 +13,9 @@ const LEAST: f64 = 0.2;
 /// The part of the cell the last resort is taken from.
 const CENTRE: f64 = 0.6;
 
-/// One point of the unit square a cell, at least 0.2 of a cell's side from those of the eight neighbours.
+/// One point of the unit disk a cell, at least 0.2 of a cell's side from those of the eight neighbours.
 pub(crate) fn separated(side: u32, stream: Stream) -> Vec<[f64; 2]> {
     let n = side as usize;
-    let mut points = vec![[0.0; 2]; n * n];
     let mut disk = vec![[0.0; 2]; n * n];
     let mut pool = [[f64::NAN; 2]; POOL];
     let least = LEAST * PI.sqrt() / f64::from(side);
@@ -44,9 +43,8 @@ pub(crate) fn separated(side: u32, stream: Stream) -> Vec<[f64; 2]> {
                 in_cell(side, cell, s, t)
             };
         };
-        points[cell] = point;
     }
-    points
+    disk
 }
 
 /// The position of a point of the square within its cell, the inverse of [`in_cell`].
@@ -74,6 +72,7 @@ fn is_clear(disk: &[[f64; 2]], n: usize, cell: usize, [p, q]: [f64; 2], least: f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ambit_base::disk_to_square;
 
     #[test]
     fn neighbours_stay_apart_and_cells_stay_uniform() {
@@ -83,8 +82,8 @@ mod tests {
         let mut histogram = [0.0; 4];
         let mut close = 0;
         for key in 0..50 {
-            let points = separated(side, Stream::new(0, key));
-            let disk: Vec<_> = points.iter().map(|p| square_to_disk(p[0], p[1])).collect();
+            let disk = separated(side, Stream::new(0, key));
+            let points: Vec<_> = disk.iter().map(|p| disk_to_square(p[0], p[1])).collect();
             for cell in 0..n * n {
                 assert!(within_cell(side, cell, points[cell]).iter().all(|x| (0.0..=1.0).contains(x)));
                 assert_eq!((points[cell][0] * 16.0) as usize, cell % n);

@@ -1,21 +1,26 @@
 //! Records of hemispheres whose irradiance and derivatives are known in closed form, at scales from 1e-4 to 1e5.
 
-use ambit_ambient::{Answer, Cache, Miss, Params, Query, Record, Sample, Sampler};
-use ambit_base::{DVec3, FAR, Rgb, Stream};
+use ambit_ambient::{Answer, Cache, Miss, Params, Query, Record, Sample, SampleRay, Sampler};
+use ambit_base::{DVec3, FAR, Rgb};
 
 /// Surroundings as a function from a ray to radiance and distance.
 struct Around<F>(F);
 
 impl<F: Fn(DVec3, DVec3) -> (f32, f64) + Sync> Sampler for Around<F> {
     type Origin = ();
+    type Scratch<'a>
+        = ()
+    where
+        Self: 'a;
+
+    fn scratch(&self) {}
 
     fn sample(
         &self,
+        (): &mut (),
         _: &Cache,
         query: &Query<()>,
-        direction: DVec3,
-        weight: f32,
-        _: Stream,
+        SampleRay { direction, weight, .. }: SampleRay,
         _: &mut Vec<Miss<()>>,
     ) -> Option<Sample> {
         assert_eq!(weight, 0.5);

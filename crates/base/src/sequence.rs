@@ -80,19 +80,19 @@ fn scramble(x: u32, seed: u32) -> u32 {
     v.reverse_bits()
 }
 
-/// The second dimension of the Sobol' sequence: Pascal's triangle modulo 2 applied to the index.
+/// The second dimension of the Sobol' sequence: Pascal's triangle modulo 2 applied to the index, lowest bit first.
+///
+/// With the bits as coefficients of a polynomial in t this is the substitution t → 1 + t, one power t^2ᵐ at a time
+/// (Ahmed 2024, *An Implementation Algorithm of 2D Sobol Sequence Fast, Elegant, and Compact*).
 #[inline]
-fn sobol_second(mut i: u32) -> u32 {
-    let mut direction = 1u32 << 31;
-    let mut r = 0;
-    while i != 0 {
-        if i & 1 != 0 {
-            r ^= direction;
-        }
-        direction ^= direction >> 1;
-        i >>= 1;
-    }
-    r
+fn sobol_second(i: u32) -> u32 {
+    let mut v = i;
+    v ^= v >> 16;
+    v ^= (v & 0xff00_ff00) >> 8;
+    v ^= (v & 0xf0f0_f0f0) >> 4;
+    v ^= (v & 0xcccc_cccc) >> 2;
+    v ^= (v & 0xaaaa_aaaa) >> 1;
+    v.reverse_bits()
 }
 
 #[inline]
@@ -119,6 +119,26 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn the_second_dimension_is_pascals_triangle() {
+        let slowly = |mut i: u32| {
+            let (mut direction, mut r) = (1u32 << 31, 0);
+            while i != 0 {
+                r ^= if i & 1 == 0 { 0 } else { direction };
+                direction ^= direction >> 1;
+                i >>= 1;
+            }
+            r
+        };
+        for k in 0..32 {
+            assert_eq!(sobol_second(1 << k), slowly(1 << k));
+        }
+        for k in 0..10_000u64 {
+            let i = mix(k, 3) as u32;
+            assert_eq!(sobol_second(i), slowly(i));
         }
     }
 

@@ -84,7 +84,8 @@ impl Renderer {
         let cache = &self.cache;
         let one = |request: &Request| {
             let mut misses = Vec::new();
-            let answer = tracer.with_walk(cache, &mut misses, |walk| walk.answer(request));
+            let mut work = tracer.work();
+            let answer = Walk { tracer: &tracer, cache, work: &mut work, misses: &mut misses }.answer(request);
             (answer, misses)
         };
         let shaded: Vec<(Answer, Vec<Miss<Origin>>)> = if requests.len() < PARALLEL_FROM {

@@ -6,8 +6,8 @@ use crate::ray::{ClipSet, Fate, Interior, Kinds, Ray};
 use crate::sources::Tally;
 use crate::walk::Walk;
 use crate::work::Work;
-use ambit_ambient::{Cache, Miss, Query, Sample, Sampler};
-use ambit_base::{DVec3, EPSILON, FAR, Rgb, Stream};
+use ambit_ambient::{Cache, Miss, Query, Sample, SampleRay, Sampler};
+use ambit_base::{DVec3, EPSILON, FAR, Rgb};
 use ambit_trace::Opacity;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -50,29 +50,25 @@ impl Tracer<'_> {
         let slot = rayon::current_thread_index().map_or(0, |i| i + 1);
         self.works[slot % self.works.len()].lock().unwrap_or_else(PoisonError::into_inner)
     }
-
-    /// A walk for one item.
-    pub(crate) fn with_walk<R>(
-        &self,
-        cache: &Cache,
-        misses: &mut Vec<Miss<Origin>>,
-        f: impl FnOnce(&mut Walk<'_>) -> R,
-    ) -> R {
-        let mut work = self.work();
-        f(&mut Walk { tracer: self, cache, work: &mut work, misses })
-    }
 }
 
 impl Sampler for Tracer<'_> {
     type Origin = Origin;
+    type Scratch<'a>
+        = MutexGuard<'a, Work>
+    where
+        Self: 'a;
+
+    fn scratch(&self) -> MutexGuard<'_, Work> {
+        self.work()
+    }
 
     fn sample(
         &self,
+        work: &mut MutexGuard<'_, Work>,
         cache: &Cache,
         query: &Query<Origin>,
-        direction: DVec3,
-        weight: f32,
-        stream: Stream,
+        SampleRay { direction, weight, stream }: SampleRay,
         misses: &mut Vec<Miss<Origin>>,
     ) -> Option<Sample> {
         let from = &query.origin;
@@ -91,7 +87,7 @@ impl Sampler for Tracer<'_> {
             Fate::Unlucky => return Some(Sample { radiance: Rgb::ZERO, distance: FAR }),
             Fate::Refused => return None,
         }
-        self.with_walk(cache, misses, |walk| walk.evaluate(&mut ray));
+        Walk { tracer: self, cache, work, misses }.evaluate(&mut ray);
         Some(Sample { radiance: ray.value * ray.coefficient, distance: ray.effective_length() })
     }
 

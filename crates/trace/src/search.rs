@@ -54,9 +54,9 @@ impl<'w> Search<'w> {
 
     /// Walks the tree.
     #[inline]
-    pub(crate) fn run(mut self) -> Found {
+    pub(crate) fn run(&mut self) -> Found {
         if let Some(vector) = self.world.vector {
-            vector.search(&mut self);
+            vector.search(self);
         } else if self.world.deep {
             self.scalar::<DEEP_STACK>();
         } else {
@@ -175,7 +175,7 @@ impl<'w> Search<'w> {
 
     /// Judges ties and describes the winner.
     #[inline]
-    fn finish(mut self) -> Found {
+    fn finish(&mut self) -> Found {
         if let Some(object) = self.blocked {
             return Found::Blocked(object);
         }

@@ -1,7 +1,7 @@
 //! Which records answer which queries.
 
 use crate::store::Store;
-use crate::{Cache, Limits, Miss, Params, Query, Record, Sample, Sampler};
+use crate::{Cache, Limits, Miss, Params, Query, Record, Sample, SampleRay, Sampler};
 use ambit_base::{DVec3, Rgb, Stream};
 
 /// Nothing but a wall in the plane x = `.0`.
@@ -9,8 +9,21 @@ struct Wall(f64);
 
 impl Sampler for Wall {
     type Origin = ();
+    type Scratch<'a>
+        = ()
+    where
+        Self: 'a;
 
-    fn sample(&self, _: &Cache, _: &Query<()>, _: DVec3, _: f32, _: Stream, _: &mut Vec<Miss<()>>) -> Option<Sample> {
+    fn scratch(&self) {}
+
+    fn sample(
+        &self,
+        (): &mut (),
+        _: &Cache,
+        _: &Query<()>,
+        _: SampleRay,
+        _: &mut Vec<Miss<()>>,
+    ) -> Option<Sample> {
         None
     }
 

@@ -1,6 +1,6 @@
 //! A room of 1 × 1 × 1 with two blocks and a small lamp, by brute force over its rectangles; everything is diffuse.
 
-use crate::{Answer, Cache, Miss, Query, Sample, Sampler};
+use crate::{Answer, Cache, Miss, Query, Sample, SampleRay, Sampler};
 use ambit_base::{DVec3, FAR, Rgb, Stream, Vec3};
 use std::f64::consts::PI;
 
@@ -167,14 +167,19 @@ impl Room {
 
 impl Sampler for Room {
     type Origin = ();
+    type Scratch<'a>
+        = ()
+    where
+        Self: 'a;
+
+    fn scratch(&self) {}
 
     fn sample(
         &self,
+        (): &mut (),
         cache: &Cache,
         query: &Query<()>,
-        direction: DVec3,
-        weight: f32,
-        stream: Stream,
+        SampleRay { direction, weight, stream }: SampleRay,
         misses: &mut Vec<Miss<()>>,
     ) -> Option<Sample> {
         let (mut sample, question) = self.look(query, direction, weight, stream);

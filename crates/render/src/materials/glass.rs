@@ -36,7 +36,11 @@ impl Glass {
             }
             (t as f32, r as f32)
         };
-        let (x, y, z) = (one(self.transmissivity.x), one(self.transmissivity.y), one(self.transmissivity.z));
+        // Most panes are grey.
+        let t = self.transmissivity;
+        let x = one(t.x);
+        let y = if t.y == t.x { x } else { one(t.y) };
+        let z = if t.z == t.y { y } else { one(t.z) };
         (Rgb::new(x.0, y.0, z.0), Rgb::new(x.1, y.1, z.1))
     }
 }

@@ -173,7 +173,9 @@ impl Walk<'_> {
     fn test_shadows(&mut self, ray: &mut Ray<'_>, candidates: &mut [Candidate]) {
         candidates.sort_by(|a, b| b.brightness.total_cmp(&a.brightness));
         let count = candidates.len();
-        let ahead = (count as f64).powf(self.tracer.options.direct.certainty).mul_add(1.0, 0.5) as usize;
+        // Two are always tested.
+        let ahead =
+            if count > 2 { ((count as f64).powf(self.tracer.options.direct.certainty) + 0.5) as usize } else { count };
         let threshold = (self.tracer.options.direct.threshold / f64::from(ray.weight)) as f32;
         let mut rest: f32 = candidates.iter().map(|c| c.brightness).sum();
         // `window` is the sum over the samples looked ahead: T(i) − T(i+K).
