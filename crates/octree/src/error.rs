@@ -36,11 +36,17 @@ pub enum Error {
         problem: Problem,
     },
     /// A frozen octree or a mesh ends within an object.
-    #[error("unexpected EOF in getobj")]
-    FrozenEnd,
+    #[error("unexpected EOF in getobj ({name})")]
+    FrozenEnd {
+        /// The file or command as the user named it.
+        name: String,
+    },
     /// A frozen object has a type that nobody knows.
-    #[error("reference to unknown type")]
-    UnknownType,
+    #[error("reference to unknown type ({name})")]
+    UnknownType {
+        /// The file or command as the user named it.
+        name: String,
+    },
     /// The scene or one of its objects.
     #[error(transparent)]
     Scene(#[from] ambit_scene::Error),
@@ -162,7 +168,7 @@ impl Error {
     /// Whose fault it is, which decides on class word and exit status.
     pub fn class(&self) -> ErrorClass {
         match self {
-            Self::Open { .. } | Self::NotFound { .. } | Self::FrozenEnd | Self::Write(_) => ErrorClass::System,
+            Self::Open { .. } | Self::NotFound { .. } | Self::FrozenEnd { .. } | Self::Write(_) => ErrorClass::System,
             Self::Build(BuildError::SetOverflow { .. }) => ErrorClass::Internal,
             Self::Scene(e) => e.class(),
             _ => ErrorClass::User,

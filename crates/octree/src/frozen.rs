@@ -24,9 +24,10 @@ pub(crate) fn read(
     scene: &mut Scene,
     notify: &dyn Notify,
 ) -> Result<usize, Error> {
+    let ends = || Error::FrozenEnd { name: name.to_owned() };
     let mut kinds = Vec::new();
     loop {
-        let word = input.string().ok_or(Error::FrozenEnd)?;
+        let word = input.string().ok_or_else(ends)?;
         if word.is_empty() {
             break;
         }
@@ -46,21 +47,25 @@ pub(crate) fn read(
         if number == END {
             return Ok(scene.len() - first);
         }
-        let kind = kinds.get(number as usize).copied().flatten().ok_or(Error::UnknownType)?;
-        let modifier = input.int(width).ok_or(Error::FrozenEnd)?;
-        let identifier = input.string().ok_or(Error::FrozenEnd)?;
+        let kind = kinds
+            .get(number as usize)
+            .copied()
+            .flatten()
+            .ok_or_else(|| Error::UnknownType { name: name.to_owned() })?;
+        let modifier = input.int(width).ok_or_else(ends)?;
+        let identifier = input.string().ok_or_else(ends)?;
         let primitive = || format!("{} \"{}\"", kind.name(), String::from_utf8_lossy(identifier));
         let count = |input: &mut Cursor<'_>| {
-            let n = input.int(2).ok_or(Error::FrozenEnd)?;
+            let n = input.int(2).ok_or_else(ends)?;
             usize::try_from(n).map_err(|_| Problem::NegativeCount { primitive: primitive() }.of(name))
         };
         strings.clear();
         for _ in 0..count(input)? {
-            strings.push(input.string().ok_or(Error::FrozenEnd)?);
+            strings.push(input.string().ok_or_else(ends)?);
         }
         reals.clear();
         for _ in 0..count(input)? {
-            reals.push(input.float().ok_or(Error::FrozenEnd)?);
+            reals.push(input.float().ok_or_else(ends)?);
         }
         let modifier = if modifier == -1 {
             VOID

@@ -60,9 +60,9 @@ fn damage_is_named_as_radiance_names_it() {
         (patched(&good, set + 5, &[0, 0, 0, 7]), "(x.oct): tree refers to object 7 of 3; octree damaged?"),
         (patched(&good, set + 5, &[0xff; 4]), "(x.oct): damaged octree"),
         (patched(&good, set + 5, &[0; 4]), "(x.oct): modifier in tree; octree stale?"),
-        (good[..good.len() - 3].to_vec(), "unexpected EOF in getobj"),
+        (good[..good.len() - 3].to_vec(), "unexpected EOF in getobj (x.oct)"),
         (good[..good.len() - 1].to_vec(), ""),
-        (text("plastic\0", "plastix\0"), "reference to unknown type"),
+        (text("plastic\0", "plastix\0"), "reference to unknown type (x.oct)"),
         (text("specpict\0", "specpicu\0"), ""),
     ];
     for (i, (bytes, expected)) in cases.iter().enumerate() {

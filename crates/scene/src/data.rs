@@ -4,7 +4,7 @@
 //! table, an axis gives its two ends the weights (i + 1 − x, x − i) for i − 1 ≤ x ≤ i + 2, so one division beyond either
 //! end is extrapolated; farther out the result decays as 1/distance, with the jump at x = i + 2 that Radiance has.
 
-use crate::lexer::{parse_integer, parse_real};
+use crate::grammar;
 use crate::tokens::Tokens;
 use crate::{AuxiliaryProblem, Error, ErrorKind};
 use ambit_base::{EPSILON, Location};
@@ -173,12 +173,12 @@ enum Fault {
 }
 
 fn integer(tokens: &mut Tokens<'_>) -> Result<i32, Fault> {
-    parse_integer(tokens.next().ok_or(Fault::Ends)?).ok_or(Fault::Format)
+    grammar::integer(tokens.next().ok_or(Fault::Ends)?).ok_or(Fault::Format)
 }
 
 /// A number in single precision, in which tables are kept.
 fn number(tokens: &mut Tokens<'_>) -> Result<f32, Fault> {
-    let value = parse_real(tokens.next().ok_or(Fault::Ends)?).ok_or(Fault::Format)? as f32;
+    let value = grammar::real(tokens.next().ok_or(Fault::Ends)?).ok_or(Fault::Format)? as f32;
     // Radiance would go on with infinity.
     if value.is_finite() { Ok(value) } else { Err(Fault::Range) }
 }

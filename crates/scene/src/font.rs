@@ -3,7 +3,7 @@
 //! A font file repeats `code n x1 y1 … xn yn`, integers from 0 to 255 with (0, 0) the lower left corner; the polygons
 //! are closed implicitly and filled even–odd. A glyph without vertices is a blank.
 
-use crate::lexer::parse_integer;
+use crate::grammar::integer;
 use crate::tokens::Tokens;
 use crate::{AuxiliaryProblem, Error, ErrorKind, FontProblem};
 
@@ -83,13 +83,13 @@ impl Font {
     fn read(tokens: &mut Tokens<'_>) -> Result<Self, FontProblem> {
         let mut glyphs: Vec<Option<Glyph>> = vec![None; 256];
         while let Some(word) = tokens.next() {
-            let code = parse_integer(word).ok_or(FontProblem::NotInteger)?;
+            let code = integer(word).ok_or(FontProblem::NotInteger)?;
             let code = u8::try_from(code).ok().filter(|&c| c > 0).ok_or(FontProblem::Character(code))?;
             let slot = &mut glyphs[usize::from(code)];
             if slot.is_some() {
                 return Err(FontProblem::Duplicate(code));
             }
-            let mut next = || tokens.next().and_then(parse_integer);
+            let mut next = || tokens.next().and_then(integer);
             let count = next().filter(|n| (0..=MAX_VERTICES).contains(n)).ok_or(FontProblem::VertexCount(code))?;
             let mut coordinate = || next().and_then(|n| u8::try_from(n).ok()).ok_or(FontProblem::Vertex(code));
             let vertices = (0..count).map(|_| Ok([coordinate()?, coordinate()?])).collect::<Result<Vec<_>, _>>()?;

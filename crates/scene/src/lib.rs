@@ -6,6 +6,7 @@ mod command;
 mod data;
 mod error;
 mod font;
+mod grammar;
 mod kind;
 mod lexer;
 mod names;

@@ -5,6 +5,7 @@ use crate::lexer::Lexer;
 use crate::{Error, ErrorKind, Kind, NewObject, ObjectId, Scene, VOID};
 use ambit_base::{Location, Notify};
 use ambit_file::os_text;
+use std::borrow::Cow;
 use std::io::Read;
 use std::path::Path;
 
@@ -138,12 +139,12 @@ impl<'a> Reader<'a> {
         let text = |word: &[u8]| String::from_utf8_lossy(word).into_owned();
 
         let Some(word) = lexer.word() else { return Ok(()) };
-        if word.quoted && word.bytes.contains(&b'\t') {
-            let kind = ErrorKind::IllegalTab { file: file(), part: "modifier", word: text(&word.bytes) };
+        if word.contains(&b'\t') {
+            let kind = ErrorKind::IllegalTab { file: file(), part: "modifier", word: text(&word) };
             return Err(input.error(lexer, kind));
         }
-        let inherit = *word.bytes == *b"inherit";
-        let modifier = match &*word.bytes {
+        let inherit = *word == *b"inherit";
+        let modifier = match &*word {
             b"void" | b"inherit" => VOID,
             name => self
                 .find(name)
@@ -151,13 +152,13 @@ impl<'a> Reader<'a> {
         };
 
         let word = lexer.word();
-        let word = word.as_ref().map_or(&[][..], |w| &w.bytes);
+        let word = word.as_ref().map_or(&[][..], |w| &**w);
         let Some(kind) = Kind::from_name(word) else {
             return Err(input.error(lexer, ErrorKind::UnknownType { file: file(), word: text(word) }));
         };
 
         let word = lexer.word();
-        let name = word.as_ref().map_or(&[][..], |w| &w.bytes);
+        let name = word.as_ref().map_or(&[][..], |w| &**w);
         if name.contains(&b'\t') {
             let kind = ErrorKind::IllegalTab { file: file(), part: "identifier", word: text(name) };
             return Err(input.error(lexer, kind));
@@ -169,7 +170,7 @@ impl<'a> Reader<'a> {
         let mut new = NewObject { kind, modifier, name, strings: &[], reals: &[], file: input.file, line };
         if kind == Kind::Alias {
             let reference = lexer.word();
-            let reference = reference.as_ref().map_or(&[][..], |w| &w.bytes);
+            let reference = reference.as_ref().map_or(&[][..], |w| &**w);
             let Some(target) = self.alias_target(reference) else {
                 let primitive = format!("alias \"{}\"", text(name));
                 let kind = ErrorKind::BadReference { file: file(), word: text(reference), primitive };
@@ -195,7 +196,7 @@ impl<'a> Reader<'a> {
             let primitive = format!("{} \"{}\"", kind.name(), text(name));
             return Err(input.error(lexer, ErrorKind::InappropriateInherit { file: file(), primitive }));
         }
-        let strings: Vec<&[u8]> = strings.iter().map(|s| &*s.bytes).collect();
+        let strings: Vec<&[u8]> = strings.iter().map(|s| &**s).collect();
         new.strings = &strings;
         new.reals = &reals;
         self.define(&new, lexer, input)?;
@@ -242,7 +243,7 @@ impl<'a> Reader<'a> {
 }
 
 /// The strings, no integers, and the reals.
-fn arguments<'a>(lexer: &mut Lexer<'a>, reals: &mut Vec<f64>) -> Option<Vec<crate::lexer::Word<'a>>> {
+fn arguments<'a>(lexer: &mut Lexer<'a>, reals: &mut Vec<f64>) -> Option<Vec<Cow<'a, [u8]>>> {
     let mut strings = Vec::new();
     for _ in 0..lexer.count()? {
         strings.push(lexer.word()?);

@@ -1,6 +1,6 @@
 //! White-space separated words with `#` comments, as data files and fonts have them.
 
-use crate::lexer::is_white;
+use crate::grammar::is_white;
 use ambit_base::Location;
 
 /// Longest word of such files; what follows without white space makes it malformed.
