@@ -223,15 +223,17 @@ impl Walk<'_> {
         answer.first_length = ray.distance;
         answer.point = ray.point;
         answer.weight = ray.weight;
+        answer.coefficient = ray.attenuation();
         if let Some(hit) = &ray.hit
             && request.aim != Aim::Irradiance
         {
-            answer.normal = ray.normal;
+            // What lets rays pass, and the back of a light, turn no normal.
+            answer.normal = if ray.normal == DVec3::ZERO { hit.normal } else { ray.normal };
             answer.geometric_normal = hit.normal;
             answer.uv = hit.uv;
             answer.surface = hit.object;
             answer.modifier = hit.modifier;
-            answer.material = ray.material;
+            answer.material = tracer.scene.modifiers.shader(hit.modifier);
         }
         answer
     }
@@ -243,7 +245,6 @@ impl Walk<'_> {
         let Some(hit) = self.tracer.scene.world.nearest(&query) else {
             if ray.limit >= FAR {
                 self.meet_distant(ray);
-                self.name_material(ray);
             }
             return;
         };
@@ -252,14 +253,6 @@ impl Walk<'_> {
         ray.point = ray.origin + ray.direction * hit.distance;
         ray.normal = if hit.cosine < 0.0 { -hit.normal } else { hit.normal };
         ray.hit = Some(hit);
-        self.name_material(ray);
-    }
-
-    /// The material that would shade a hit.
-    fn name_material(&self, ray: &mut Ray<'_>) {
-        if let Some(hit) = &ray.hit {
-            ray.material = self.tracer.scene.modifiers.material(hit.modifier).map_or(VOID, |m| m.1);
-        }
     }
 }
 

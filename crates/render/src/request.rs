@@ -66,6 +66,8 @@ pub struct Answer {
     pub material: ObjectId,
     /// Weight of the ray.
     pub weight: f32,
+    /// What the medium on the way leaves of its light.
+    pub coefficient: Rgb,
 }
 
 impl Answer {
@@ -88,6 +90,7 @@ impl Answer {
             modifier: VOID,
             material: VOID,
             weight: 1.0,
+            coefficient: Rgb::ONE,
         }
     }
 }

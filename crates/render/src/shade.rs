@@ -2,7 +2,7 @@
 //! colour, textures tilt the normal, a mixture splits the walk, a material ends it.
 
 use crate::Error;
-use crate::materials::Finish;
+use crate::materials::{Facing, Finish};
 use crate::prepare::Node;
 use crate::ray::Ray;
 use crate::walk::Walk;
@@ -50,6 +50,9 @@ impl Walk<'_> {
                 }
             }
             id = next;
+        }
+        if ray.parent.is_none() && finish.tilt != DVec3::ZERO {
+            ray.normal = Facing::of(ray, finish.tilt, false).normal;
         }
         false
     }

@@ -39,8 +39,7 @@ impl<'a> RecordWriter<'a> {
                 Field::Direction => self.vector(out, answer.direction),
                 Field::Value | Field::Contribution => self.colour(out, answer.value),
                 Field::Weight => self.number(out, f64::from(answer.weight)),
-                // The coefficient of a primary ray is one, as a colour.
-                Field::Coefficient => self.colour(out, Rgb::ONE),
+                Field::Coefficient => self.colour(out, answer.coefficient),
                 Field::Length => self.number(out, answer.length),
                 Field::FirstLength => self.number(out, answer.first_length),
                 Field::Coordinates => answer.uv.iter().for_each(|&x| self.number(out, x)),

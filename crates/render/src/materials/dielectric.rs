@@ -35,7 +35,6 @@ fn absorption(transmission: Rgb) -> Interior {
 impl Walk<'_> {
     pub(crate) fn dielectric(&mut self, ray: &mut Ray<'_>, m: &Dielectric, finish: Finish) -> bool {
         let facing = Facing::of(ray, finish.tilt, true);
-        ray.normal = facing.normal;
         let outside = match m.outside {
             Some((t, _)) => absorption(t * finish.pattern),
             None => self.tracer.global_interior(),
@@ -43,6 +42,7 @@ impl Walk<'_> {
         let inside = absorption(m.inside.0 * finish.pattern);
         let outer_index = m.outside.map_or(1.0, |o| o.1);
         let entering = ray.cosine() > 0.0;
+        ray.normal = if entering { facing.normal } else { -facing.normal };
         let (eta, beyond) = if entering {
             if m.outside.is_some() {
                 ray.interior = outside;

@@ -42,7 +42,7 @@ impl Mist {
 
 impl Walk<'_> {
     pub(crate) fn mist(&mut self, ray: &mut Ray<'_>, m: &Mist, finish: Finish) -> bool {
-        ray.normal = ray.facing_normal();
+        ray.normal = ray.hit.as_ref().map_or(-ray.direction, |h| h.normal);
         let extinction = m.extinction * finish.pattern;
         let mut beyond = ray.interior;
         if ray.cosine() > 0.0 {

@@ -3,7 +3,7 @@
 use super::compiler::{Compiler, Functions};
 use super::lookup::{Layout, Lookup};
 use crate::Error;
-use crate::materials::Finish;
+use crate::materials::{Facing, Finish};
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{Colour, EPSILON};
@@ -93,6 +93,7 @@ impl Walk<'_> {
             self.fail(Error::primitive(&scene.objects, mixture.id, "inappropriate modifier"));
             return Some(true);
         }
+        ray.normal = Facing::of(ray, finish.tilt, false).normal;
         let whole = *ray;
         let (mut most, mut most_mirrored) = (-1.0, -1.0);
         for (&side, share) in mixture.sides.iter().zip(shares) {
@@ -117,8 +118,6 @@ impl Walk<'_> {
             if other > most {
                 most = other;
                 ray.unmirrored_length = part.unmirrored_length;
-                ray.normal = part.normal;
-                ray.material = part.material;
             }
         }
         Some(true)

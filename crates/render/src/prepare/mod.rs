@@ -49,7 +49,13 @@ impl Prepared {
     pub(crate) fn new(loaded: Loaded, options: &Options, environment: &Environment<'_>) -> Result<Self, Error> {
         let Loaded { mut scene, top_level, volumes, cube, .. } = loaded;
         let modifiers = Modifiers::compile(&scene, environment)?;
-        let sources = crate::sources::find_sources(&scene, top_level.clone(), &modifiers, environment)?;
+        let sources = crate::sources::find_sources(
+            &scene,
+            top_level.clone(),
+            &modifiers,
+            options.ambient.bounces > 0,
+            environment,
+        )?;
         let world = world::build(&scene, top_level.clone(), &volumes, &modifiers, environment)?;
         let obstacles = Obstacles::find(&sources, &world, &modifiers);
         let left_out = left_out(&scene, &options.ambient.selection);

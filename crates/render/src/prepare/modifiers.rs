@@ -183,6 +183,19 @@ impl Modifiers {
         None
     }
 
+    /// The material that shades surfaces with this modifier, or the mixture that blends materials for them.
+    pub(crate) fn shader(&self, mut id: ObjectId) -> ObjectId {
+        while id != VOID {
+            let (node, definition, next) = self.get(id);
+            match node {
+                Node::Material(_) => return definition,
+                Node::Mixture(m) if m.sides.iter().any(|&side| self.has_material(side)) => return definition,
+                _ => id = next,
+            }
+        }
+        VOID
+    }
+
     /// The error of a light-source material that a chain leads to but that cannot be used.
     pub(crate) fn faulty_light(&self, scene: &Scene, mut id: ObjectId) -> Option<Error> {
         while id != VOID {

@@ -154,6 +154,8 @@ impl Walk<'_> {
             self.relayed(ray, id, sample.direction)
         } else if source.patterned {
             self.source_value(ray, id, sample.direction)
+        } else if source.encloses(ray.point) {
+            Rgb::ZERO
         } else if source.filled(bend) || source.intersect(ray.point, sample.direction).is_some() {
             source.emission
         } else {

@@ -194,6 +194,11 @@ impl Source {
         Some(self.size * factor / (d * d))
     }
 
+    /// True for points inside a spherical source or on it, which see it from behind only.
+    pub(crate) fn encloses(&self, point: DVec3) -> bool {
+        matches!(&self.emitter, Emitter::Sphere(s) if s.centre.distance(point) <= s.radius + EPSILON)
+    }
+
     /// Where a ray meets the source's own surface from the front: distance and normal.
     pub(crate) fn intersect(&self, origin: DVec3, l: DVec3) -> Option<(f64, DVec3)> {
         match &self.emitter {

@@ -7,11 +7,13 @@ use crate::prepare::{Environment, Modifiers};
 use ambit_base::{EPSILON, FAR};
 use ambit_scene::{Class, Kind, ObjectId, Scene, Shape};
 
-/// The sources among the objects `top_level`, in scene order.
+/// The sources among the objects `top_level`, in scene order. `indirect` tells whether light is followed from surface
+/// to surface; without it and without sources a warning says that all will be dark.
 pub(crate) fn find_sources(
     scene: &Scene,
     top_level: std::ops::Range<ObjectId>,
     modifiers: &Modifiers,
+    indirect: bool,
     environment: &Environment<'_>,
 ) -> Result<Vec<Source>, Error> {
     let mut found = Vec::new();
@@ -23,10 +25,11 @@ pub(crate) fn find_sources(
         }
         let Some(node) = modifiers.light(scene, object.modifier)? else { continue };
         if let Some(source) = source(scene, id, node, modifiers, environment)? {
-            lit = true;
+            // A glow that is not sampled lights something only by interreflection.
+            lit |= source.sampled || !source.glow || indirect;
             found.push(source);
         } else {
-            lit |= node.kind == Kind::Glow && node.radius >= -EPSILON && node.emission.max_element() > EPSILON as f32;
+            lit |= indirect && node.kind == Kind::Glow && node.emission.max_element() > EPSILON as f32;
         }
     }
     if !lit {
@@ -55,7 +58,7 @@ fn source(
     if let Some(spot) = &light.spot {
         if distant {
             environment.notify.warn(&format!("distant source is a spotlight for {}", scene.describe(id)));
-        } else if normal.length_squared() > 0.0 && behind(spot.aim.dot(normal), spot.cosine) {
+        } else if normal.length_squared() > 0.0 && misdirected(spot.aim.dot(normal), spot.cosine) {
             environment.notify.warn(&format!("invalid spotlight direction for {}", scene.describe(id)));
             sampled = false;
         }
@@ -82,10 +85,12 @@ fn source(
     }))
 }
 
-/// True if a cone of half-angle acos(`half`) about an aim at `cosine` to the normal lies behind the surface.
-fn behind(cosine: f64, half: f64) -> bool {
+/// True if a spotlight of half-angle acos(`half`) about an aim at `cosine` to the normal is dropped: where it points
+/// backwards but not so far that the sine of its angle would be exceeded. (A cone wholly behind the surface lights
+/// nothing anyway.)
+fn misdirected(cosine: f64, half: f64) -> bool {
     let sine = (1.0 - half * half).max(0.0).sqrt();
-    cosine <= -sine && half > 0.0
+    (-sine..=0.0).contains(&cosine)
 }
 
 impl Modifiers {
