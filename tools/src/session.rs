@@ -201,8 +201,9 @@ impl Session {
 
     /// Sets up what comes before the work: error file and threads; refuses what is not served.
     pub(crate) fn prepare(&mut self, common: &Common) -> Result<(), Stop> {
-        if common.persist.is_some() {
-            return Err(Failure::unsupported("persist mode (-P, -PP) is").into());
+        if common.persist.is_some() && self.octree.is_none() {
+            // No program stays behind that could be attached to: every run renders by itself.
+            return Err(Failure::unsupported("persist mode (-P, -PP) without an octree is").into());
         }
         if let Some(file) = &common.error_file {
             let words = self.words.iter().chain(&self.octree);

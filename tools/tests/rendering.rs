@@ -137,6 +137,7 @@ fn interrupted_pictures_are_completed() {
     let answer = bench.rpict("-t 9 -z part.z -ro part.hdr scene.oct", b"");
     assert!(answer.status.success());
     let report = String::from_utf8(answer.stderr).unwrap();
+    let report = report.strip_prefix("rpict: warning - no light sources found\n").unwrap();
     assert!(report.starts_with("rpict: 0 rays, ") && !report.starts_with("rpict: 0 rays, 0.00%"), "{report}");
     assert!(report.contains(" 100.00% after "), "{report}");
     let body = |p: &[u8]| p[p.windows(2).position(|w| w == b"\n\n").unwrap()..].to_vec();
@@ -172,7 +173,8 @@ fn frames_that_exist_are_not_made_again() {
     let third = std::fs::read(bench.path("f03.hdr")).unwrap();
     assert!(String::from_utf8_lossy(&third).contains("FRAME=3\nVIEW= -vtv"));
     let again = bench.rpict(&line.replace("-w ", ""), views);
-    assert_eq!(String::from_utf8_lossy(&again.stderr), "rpict: warning - no output produced\n");
+    let warnings = "rpict: warning - no light sources found\nrpict: warning - no output produced\n";
+    assert_eq!(String::from_utf8_lossy(&again.stderr), warnings);
 }
 
 #[test]
@@ -191,7 +193,7 @@ fn errors_have_their_class_and_status() {
         ("none.oct", "rtrace: system - cannot open octree file \"none.oct\": No such file or directory", 2),
         ("-e /nonexistent/x scene.oct", "", 2),
         ("-features Nope", "rtrace: missing feature - Nope", 1),
-        ("-P file scene.oct", "rtrace: fatal - persist mode (-P, -PP) is not supported", 1),
+        ("-P file", "rtrace: fatal - persist mode (-P, -PP) without an octree is not supported", 1),
         ("-cs 9 scene.oct", "rtrace: fatal - spectral calculation (-cs above 3) is not supported", 1),
         ("-ovt scene.oct", "", 0),
         ("-otv scene.oct", "rtrace: fatal - ray tree output (-otv) is not supported", 1),
@@ -206,6 +208,12 @@ fn errors_have_their_class_and_status() {
     let lines: Vec<String> = String::from_utf8_lossy(&answer.stderr).lines().map(String::from).collect();
     assert_eq!(lines[0], "rpict: fatal - view up parallel to view direction");
     assert!(lines[1].starts_with("rpict: 0 rays, 0.00% after 0.000u 0.000s 0.000r hours on "));
+    for (line, text) in [
+        ("-PP file scene.oct", "rpict: fatal - persist option only for sequences"),
+        ("-S 1 -r old.hdr -P file scene.oct", "rpict: fatal - persist option used with recover file"),
+    ] {
+        assert_eq!(first(&bench.rpict(line, b"")), text);
+    }
     let answer = bench.rpict("-o scene.rad scene.oct", b"");
     assert!(String::from_utf8_lossy(&answer.stderr).contains("cannot open output file \"scene.rad\": File exists\n"));
     assert_eq!(answer.status.code(), Some(2));

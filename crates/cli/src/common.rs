@@ -157,7 +157,7 @@ pub(crate) fn persist_rows<S: Carries<Common>>() -> Vec<Row<S>> {
                     s.part().persist = Some(file);
                     Ok(())
                 }),
-                "stay in the background and serve further runs (not supported)",
+                "taken for rad's sake: every run renders by itself, and none stays in the background",
             )
             .values("FILE")
         })

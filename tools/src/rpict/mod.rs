@@ -59,6 +59,14 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         session.messages.warn(&text);
     }
     options.spacing = options.spacing.clamp(1, GREATEST_SPACING);
+    if options.common.persist.is_some() {
+        if options.sequence <= 0 {
+            return Err(Failure::user("persist option only for sequences").into());
+        }
+        if options.recover.is_some() {
+            return Err(Failure::user("persist option used with recover file").into());
+        }
+    }
     if options.sequence > 0 {
         if session.octree.is_none() {
             return Err(Failure::user("missing octree argument").into());

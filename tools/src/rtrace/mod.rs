@@ -44,6 +44,7 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     }
     options.rendering.check()?;
     let Some(octree) = session.octree.clone() else {
+        session.prepare(&options.common)?;
         return Err(Failure::user("missing octree argument").into());
     };
     let job = Job::new(&options, session)?;
