@@ -70,6 +70,30 @@ pub enum Error {
         /// Type and identifier.
         primitive: String,
     },
+    /// A statement of a Wavefront OBJ file.
+    #[error("{name}: Wavefront syntax error near line {line}: {problem}")]
+    Obj {
+        /// The file.
+        name: String,
+        /// Its line.
+        line: usize,
+        /// What is wrong.
+        problem: ObjProblem,
+    },
+    /// A face of a material that is not there.
+    #[error("{file}: undefined modifier \"{material}\"")]
+    UndefinedMaterial {
+        /// The OBJ file.
+        file: String,
+        /// The name that it uses.
+        material: String,
+    },
+    /// A mesh without a triangle.
+    #[error("no polygons in mesh")]
+    NoPolygons,
+    /// A mesh that can not be made.
+    #[error("{0}")]
+    Mesh(Problem),
     /// The octree could not be written.
     #[error("output error in writeoct: {}", os_text(.0))]
     Write(#[source] io::Error),
@@ -155,6 +179,30 @@ pub enum Problem {
     /// More vertices than can be numbered.
     #[error("mesh too large")]
     MeshTooLarge,
+}
+
+/// What is wrong with a statement of an OBJ file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ObjProblem {
+    /// A position that is not three numbers.
+    #[error("bad vertex")]
+    Vertex,
+    /// A normal that is not three numbers.
+    #[error("bad normal")]
+    Normal,
+    /// A normal without length.
+    #[error("zero normal")]
+    ZeroNormal,
+    /// A face with fewer than three corners.
+    #[error("too few vertices")]
+    TooFewVertices,
+    /// A face of three corners, one of which refers to nothing.
+    #[error("bad triangle")]
+    Triangle,
+    /// A face of more corners, one of which refers to nothing.
+    #[error("bad face")]
+    Face,
 }
 
 impl Problem {

@@ -17,9 +17,9 @@ mod write;
 
 pub use build::{BuildError, Extended, Limits, build, extend};
 pub use cube::{Cube, MARGIN};
-pub use error::{Error, Problem};
+pub use error::{Error, ObjProblem, Problem};
 pub use geometry::Geometry;
-pub use mesh::{Mesh, read_mesh};
+pub use mesh::{CompiledMesh, MESH_LIMITS, Mesh, compile_mesh, read_mesh};
 pub use open::open;
 pub use overlap::{Relation, Volume};
 pub use prepare::{Find, Prepared, prepare, prepare_present};

@@ -59,7 +59,7 @@ pub fn write(
     write_all().map_err(Error::Write)
 }
 
-fn write_tree(out: &mut impl Write, tree: &Tree) -> io::Result<()> {
+pub(crate) fn write_tree(out: &mut impl Write, tree: &Tree) -> io::Result<()> {
     for node in tree.nodes() {
         match node {
             Node::Empty => out.write_all(&[0])?,

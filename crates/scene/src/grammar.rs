@@ -161,7 +161,7 @@ fn digits<'a>(mut number: u64) -> impl FnOnce(Text<'a>) -> Parsed<'a, u64> {
 
 /// `[+-]? (digit+ [. digit*] | . digit+) ([eE] [+-]? digit+)?`, after optional white space (that only quotes let in),
 /// filling the word. Too large numbers become infinite.
-pub(crate) fn real(word: Text<'_>) -> Option<f64> {
+pub fn real(word: Text<'_>) -> Option<f64> {
     let mantissa = alt((recognize((digit1, opt((char('.'), digit0)))), recognize((char('.'), digit1))));
     let exponent = opt((one_of("eE"), sign, digit1));
     let number = preceded(white, recognize((sign, mantissa, exponent)));

@@ -22,6 +22,7 @@ pub use command::{CommandOutput, NoCommands, Runner, Shell};
 pub use data::{Axis, DataTable, MAX_DIMENSIONS};
 pub use error::{AuxiliaryProblem, Error, ErrorClass, ErrorKind, FontProblem, Problem};
 pub use font::{Font, GLYPH_SIZE, Glyph};
+pub use grammar::real as parse_real;
 pub use kind::{Class, KINDS, Kind};
 pub use object::{NewObject, Object, ObjectId, Scene, VOID};
 pub use reader::Reader;

@@ -2,9 +2,15 @@
 //! direction codes, texture coordinates as fractions of their range. Lengths are the units of the mesh's own
 //! coordinates.
 
+mod compile;
+mod ear;
+mod obj;
 mod patch;
 mod read;
+mod store;
+mod write;
 
+pub use compile::{CompiledMesh, MESH_LIMITS, compile_mesh};
 pub(crate) use read::read_cube;
 pub use read::read_mesh;
 
