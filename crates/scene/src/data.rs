@@ -7,7 +7,7 @@
 use crate::grammar;
 use crate::tokens::Tokens;
 use crate::{AuxiliaryProblem, Error, ErrorKind};
-use ambit_base::{EPSILON, Location};
+use ambit_base::EPSILON;
 
 /// Most dimensions a table can have.
 pub const MAX_DIMENSIONS: usize = 6;
@@ -101,8 +101,7 @@ impl DataTable {
                 auxiliary(AuxiliaryProblem::DataFormat(path.to_owned()), tokens.location(path))
             }
             Err(Fault::Format | Fault::Ends) => {
-                let whole = Location { file: path.to_owned(), line: 0, column: 0 };
-                auxiliary(AuxiliaryProblem::DataEnds(path.to_owned()), whole)
+                auxiliary(AuxiliaryProblem::DataEnds(path.to_owned()), tokens.location(path))
             }
         }
     }
