@@ -8,3 +8,4 @@ pub mod raderr;
 pub mod rpict;
 pub mod rtrace;
 mod session;
+mod statistics;

@@ -63,6 +63,9 @@ impl<'a> Scene<'a> {
                 ambit_base::Notify::warn(&session.messages, &text);
             }
         }
+        if rendering.statistics {
+            renderer.measure(crate::statistics::clock);
+        }
         session.begin_work();
         Ok(Self { session, renderer, header })
     }
@@ -74,7 +77,13 @@ impl<'a> Scene<'a> {
 
     /// Closes the ambient file; call it whatever happened.
     pub(crate) fn close(mut self) -> Result<(), Stop> {
-        self.renderer.finish(&self.session.messages).map_err(failed)
+        let result = self.renderer.finish(&self.session.messages).map_err(failed);
+        if let Some(report) = self.renderer.report() {
+            for line in crate::statistics::lines(&report, self.session.meter.seconds()) {
+                self.session.messages.print(format_args!("statistics - {line}"));
+            }
+        }
+        result
     }
 }
 

@@ -1,15 +1,19 @@
 //! The cache: options, records, and questions to them.
 
 use crate::average::Average;
+use crate::observe::{Observer, Stopwatch};
 use crate::params::{Limits, Params};
 use crate::record::Record;
 use crate::sampler::{Answer, Query, Sampler};
 use crate::store::Store;
 use ambit_base::{DVec3, Rgb};
+use std::sync::Arc;
 
 /// What filling the cache took.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
+    /// Records that were loaded, by level.
+    pub loaded: Vec<u64>,
     /// Hemisphere samples by the level of the hemisphere; entry 0 is the eye's.
     pub samples: Vec<u64>,
     /// Rounds of filling.
@@ -30,6 +34,11 @@ pub struct Cache {
     pub(crate) quantised: bool,
     pub(crate) statistics: Statistics,
     records: Vec<Record>,
+    /// Counts look-ups, if they are to be counted.
+    pub(crate) observer: Option<Arc<Observer>>,
+    pub(crate) stopwatch: Stopwatch,
+    /// True if look-ups are answered from records and not counted.
+    pub(crate) plain: bool,
 }
 
 impl Cache {
@@ -38,6 +47,9 @@ impl Cache {
         Self {
             limits: Limits::new(&params, cube_edge),
             store: Store::new(cube_origin, cube_edge),
+            plain: params.caches(),
+            observer: None,
+            stopwatch: Stopwatch::default(),
             params,
             average: Average::default(),
             quantised: false,
@@ -75,7 +87,14 @@ impl Cache {
     pub fn load(&mut self, records: impl IntoIterator<Item = Record>) -> usize {
         let mut dropped = 0;
         for record in records {
-            dropped += usize::from(!self.insert(record));
+            if self.insert(record) {
+                let level = usize::from(record.level);
+                let loaded = &mut self.statistics.loaded;
+                loaded.resize(loaded.len().max(level + 1), 0);
+                loaded[level] += 1;
+            } else {
+                dropped += 1;
+            }
         }
         dropped
     }
@@ -111,8 +130,8 @@ impl Cache {
         if self.ends_at(query.level) {
             return Answer::Fallback(self.fallback());
         }
-        if !self.params.caches() {
-            return Answer::Uncached;
+        if !self.plain {
+            return self.ask_observed(sampler, query);
         }
         self.lookup(sampler, query).map_or(Answer::Miss, Answer::Value)
     }

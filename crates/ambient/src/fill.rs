@@ -44,6 +44,7 @@ impl Cache {
     /// Computes what records are needed and answers every miss, in order. Values are irradiance/π at the query, to be
     /// multiplied by the miss's coefficient.
     pub fn resolve<S: Sampler>(&mut self, sampler: &S, misses: &[Miss<S::Origin>]) -> Vec<Rgb> {
+        let start = self.stopwatch.start();
         let mut values = vec![Rgb::ZERO; misses.len()];
         let mut levels: Vec<u8> = misses.iter().map(|m| m.query.level).collect();
         levels.sort_unstable();
@@ -54,6 +55,7 @@ impl Cache {
                 self.window(sampler, misses, level, window, number > 0, &mut values);
             }
         }
+        self.stopwatch.stop(start);
         values
     }
 

@@ -28,6 +28,7 @@ mod gather;
 mod hemisphere;
 mod lookup;
 mod mesh;
+mod observe;
 mod parallel;
 mod params;
 mod radii;
@@ -49,6 +50,7 @@ pub use file::{AmbientFile, Contents, FORMAT, FileError, Opened, Opening, PATIEN
 pub use file::{Comparison, Fingerprint, Gravity, Mark, MarkLine, fingerprint_lines};
 pub use file::{Segment, missing, remove_done, segments};
 pub use hemisphere::Hemisphere;
+pub use observe::{Clock, LEVELS, Observed};
 pub use params::{ASSUMED_REFLECTANCE, Limits, Params};
 pub use record::Record;
 pub use sampler::{Answer, Miss, Query, Sample, SampleRay, Sampler};

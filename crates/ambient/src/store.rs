@@ -12,7 +12,7 @@ use crate::params::Limits;
 use crate::record::Record;
 use crate::sampler::{Query, Sampler};
 use crate::sieve::{Block, LANES, Mark, Probe};
-use ambit_base::DVec3;
+use ambit_base::{DVec3, Rgb};
 
 /// Weight from which the records of smaller cells suffice and longer-reaching ones are not searched.
 const GOOD_ENOUGH: f32 = 0.05;
@@ -238,6 +238,52 @@ impl Store {
         let search = Search { store: self, asked, inside, limits, sampler, query };
         search.node(0, self.corner, self.edge, &mut sum);
         sum
+    }
+}
+
+impl Store {
+    /// The records that [`Store::lookup`] sums, one by one: weights and answers. For statistics, not for speed.
+    pub(crate) fn contributions<S: Sampler>(
+        &self,
+        limits: &Limits,
+        sampler: &S,
+        query: &Query<S::Origin>,
+    ) -> Vec<(f32, Rgb)> {
+        let asked = Asked::new(query, limits);
+        let inside = query.position.clamp(self.corner, self.corner + self.edge);
+        let (mut corner, mut edge, mut node) = (self.corner, self.edge, self.nodes[0]);
+        let mut path = vec![(node, edge)];
+        while node.children != 0 {
+            edge *= 0.5;
+            let middle = corner + edge;
+            let upper = inside.cmpgt(middle);
+            node = self.nodes[node.children as usize + upper.bitmask() as usize];
+            corner = DVec3::select(upper, middle, corner);
+            path.push((node, edge));
+        }
+        let mut found = Vec::new();
+        let mut weight = 0.0;
+        for (node, edge) in path.into_iter().rev() {
+            if weight >= GOOD_ENOUGH && 0.25 * edge * limits.accuracy > limits.min_radius {
+                break;
+            }
+            let Some(first) = self.listed(&node).next() else { continue };
+            let angle = asked.angle_for(self.places[first as usize].level);
+            for id in self.listed(&node) {
+                let place = &self.places[id as usize];
+                let deeper = place.level > asked.level;
+                if deeper || place.level == asked.level && place.weight < asked.least_weight {
+                    break;
+                }
+                let mut sum = Sum::EMPTY;
+                let own = accumulate(&asked, angle, place, &self.derived[id as usize], sampler, query, &mut sum);
+                if own > 0.0 {
+                    weight += own;
+                    found.extend(sum.answer().map(|value| (own, value)));
+                }
+            }
+        }
+        found
     }
 }
 

@@ -66,7 +66,7 @@ fn heading(flag: &str) -> &'static str {
         "pRGB" | "pXYZ" | "pc" | "pY" | "pS" | "pM" | "pA" | "co" | "fIO" | "o" | "h" | "ro" | "r" | "z" | "S" => {
             "Output"
         }
-        "-reuse" => "Interreflection",
+        "-reuse" | "-stats" => "Interreflection",
         _ => match flag.as_bytes()[0] {
             b'v' => "View",
             b'd' => "Direct light",

@@ -14,6 +14,8 @@ pub struct Rendering {
     pub ambient_file: Option<String>,
     /// `--reuse`: what is done with records that the ambient file has; `None` leaves the file alone.
     pub reuse: Option<Reuse>,
+    /// `--stats`: say in the end what the calculation took.
+    pub statistics: bool,
     /// `-f FILE` and `-e EXPRESSION`, in order.
     pub functions: Vec<Function>,
     /// `-cs`, `-cw`.
@@ -70,6 +72,7 @@ impl Rendering {
             options,
             ambient_file: None,
             reuse: Some(Reuse::Auto),
+            statistics: false,
             functions: Vec::new(),
             spectrum: Spectrum { samples: 3, from: 380.0, to: 780.0 },
             photon_maps: Vec::new(),
@@ -448,6 +451,11 @@ fn file_rows<S: Carries<Rendering> + Carries<Common>>() -> Vec<Row<S>> {
             },
             "FILE|EXPRESSION",
             "append messages to a file; or, with = or : in it, define a variable for function files",
+        ),
+        Row::new(
+            "-stats",
+            Place::Bare(|s: &mut S| light(s).statistics = true),
+            "say in the end what interreflection took: records, look-ups, hemispheres, time, estimated error",
         ),
         Row::new("-seed", Place::Seed(|s: &mut S| &mut light(s).options.seed), "change every random number")
             .values("N"),

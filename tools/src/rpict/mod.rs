@@ -54,6 +54,9 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         return Ok(());
     }
     options.rendering.check()?;
+    // Reports end with statistics, where there is a cache.
+    let ambient = &options.rendering.options.ambient;
+    options.rendering.statistics |= options.report > 0 && ambient.bounces > 0;
     if options.spacing > GREATEST_SPACING {
         let text = format!("pixel sampling reduced from {} to {GREATEST_SPACING}", options.spacing);
         session.messages.warn(&text);

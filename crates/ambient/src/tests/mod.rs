@@ -2,5 +2,6 @@
 
 mod filling;
 mod interpolation;
+mod observing;
 mod room;
 mod serial;

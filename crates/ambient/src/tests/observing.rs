@@ -1,0 +1,57 @@
+//! Counting changes nothing, and counts the same on any number of threads.
+
+use super::room::Room;
+use crate::{Answer, Cache, Observed, Params};
+use ambit_base::{DVec3, Rgb};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+/// A clock that goes on by a second whenever it is read.
+fn tick() -> Duration {
+    static SECONDS: AtomicU64 = AtomicU64::new(0);
+    Duration::from_secs(SECONDS.fetch_add(1, Ordering::Relaxed))
+}
+
+fn observed(observe: bool, threads: usize) -> (Vec<Answer>, Option<Observed>) {
+    let params = Params { bounces: 2, divisions: 64, super_samples: 0, ..Params::default() };
+    let room = Room::new();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
+    pool.install(|| {
+        let mut cache = Cache::new(params, DVec3::splat(-0.01), 1.02);
+        if observe {
+            cache.observe(tick);
+        }
+        let pixels = room.pixels(40);
+        cache.resolve(&room, &pixels);
+        // Hemispheres within hemispheres are not measured again.
+        let seconds = cache.filling().as_secs();
+        assert!(if observe { (1..10).contains(&seconds) } else { seconds == 0 }, "{seconds}");
+        let answers: Vec<Answer> = pixels.iter().map(|m| cache.ask(&room, &m.query)).collect();
+        // The records taken one by one make up what the look-up sums at once.
+        for (m, answer) in pixels.iter().zip(&answers) {
+            let parts = cache.store.contributions(cache.limits(), &room, &m.query);
+            let weight: f32 = parts.iter().map(|p| p.0).sum();
+            let mean = parts.iter().map(|p| p.1 * p.0).sum::<Rgb>() / weight;
+            if let (Answer::Value(value), true) = (answer, weight > 1e-5) {
+                assert!((mean - *value).abs().max_element() <= 1e-4 * value.max_element(), "{mean} {value}");
+            }
+        }
+        (answers, cache.observed())
+    })
+}
+
+#[test]
+fn counting_changes_nothing_and_does_not_depend_on_threads() {
+    let (plain, none) = observed(false, 1);
+    assert_eq!(none, None);
+    let (one, counts) = observed(true, 1);
+    assert_eq!(plain, one);
+    assert_eq!(observed(true, 3), (one.clone(), counts));
+    let counts = counts.expect("it was asked for");
+    let answered = one.iter().filter(|a| matches!(a, Answer::Value(_))).count() as u64;
+    // At level 0 only the questions above were asked; the hemispheres asked at level 1.
+    assert_eq!((counts.asked[0], counts.answered[0]), (one.len() as u64, answered));
+    assert!(counts.asked[1] > 1000 && counts.answered[1] > 0 && counts.asked[2] == 0, "{counts:?}");
+    assert!(counts.compared > 20 && counts.error > 0.0 && counts.error < counts.difference, "{counts:?}");
+    assert!(counts.difference < 0.5, "{counts:?}");
+}

@@ -1,0 +1,56 @@
+//! What is said at the end of a run about interreflection (`--stats`).
+
+use ambit_render::Report;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+/// Time since the first call.
+pub(crate) fn clock() -> Duration {
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed()
+}
+
+/// The lines of a report on a run of so many seconds.
+pub(crate) fn lines(report: &Report, seconds: f64) -> Vec<String> {
+    let o = &report.observed;
+    let share = |part: u64, all: u64| 100.0 * part as f64 / all.max(1) as f64;
+    let (asked, answered): (u64, u64) = (o.asked.iter().sum(), o.answered.iter().sum());
+    let deepest = o.asked.iter().rposition(|&n| n > 0).map_or(0, |k| k + 1);
+    let hits: Vec<String> = (0..deepest).map(|k| format!("{:.2}", share(o.answered[k], o.asked[k]))).collect();
+    vec![
+        format!("{} made, {} from the ambient file", counted("records", &report.made), counted("", &report.loaded)),
+        format!(
+            "{asked} look-ups, {:.3} a ray; {:.2} % answered by records (by level: {})",
+            asked as f64 / report.rays.max(1) as f64,
+            share(answered, asked),
+            hits.join(" ")
+        ),
+        format!(
+            "{} in {} rounds, {:.1} % of the time",
+            counted("hemisphere samples", &report.samples),
+            report.rounds,
+            100.0 * report.filling.as_secs_f64() / seconds.max(1e-9)
+        ),
+        if o.compared > 0 {
+            let (error, difference) = (100.0 * o.error, 100.0 * o.difference);
+            let of = o.compared;
+            format!(
+                "estimated interpolation error {error:.2} % (RMS of {of} look-ups; records that answer together differ by \
+                 {difference:.2} %)"
+            )
+        } else {
+            "interpolation error not estimated: too few look-ups that several records answer".to_owned()
+        },
+    ]
+}
+
+/// A sum, what it is of, and its parts by level.
+fn counted(what: &str, levels: &[u64]) -> String {
+    let total: u64 = levels.iter().sum();
+    let name = if what.is_empty() { String::new() } else { format!(" {what}") };
+    if total == 0 {
+        return format!("{total}{name}");
+    }
+    let parts: Vec<String> = levels.iter().map(u64::to_string).collect();
+    format!("{total}{name} (by level: {})", parts.join(" "))
+}
