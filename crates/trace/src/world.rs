@@ -59,7 +59,7 @@ impl World {
         let distance = target.and_then(|t| self.distance(t, ray));
         let bound = distance.map_or(f64::INFINITY, |t| t + EPSILON);
         let blocked_before = match distance {
-            _ if self.benders.iter().any(|b| bounds::meets(b, ray.origin, ray.direction)) => f64::NEG_INFINITY,
+            _ if self.bends(ray) => f64::NEG_INFINITY,
             Some(t) => t - EPSILON,
             None => f64::INFINITY,
         };
@@ -70,6 +70,11 @@ impl World {
             Found::Blocked(object) => Shadow::Blocked(object),
             Found::Hit(hit, _) => Shadow::Other(hit),
         }
+    }
+
+    /// True if something on the ray's line may send it off that, or hide other surfaces from it.
+    pub fn bends(&self, ray: &Ray) -> bool {
+        self.benders.iter().any(|b| bounds::meets(b, ray.origin, ray.direction))
     }
 
     /// Distance at which the ray would hit this surface of the world if nothing else were there. None if it is missed,

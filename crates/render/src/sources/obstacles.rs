@@ -3,7 +3,7 @@
 //!
 //! A shadow ray that meets its cell's obstacle needs no search, and the sample is known not to count, which keeps the
 //! estimate for untested sources honest where many sources are blocked. The table is made once and never changes, so
-//! nothing depends on the order of rays. Scenes in which every sample is tested anyway have none.
+//! nothing depends on the order of rays.
 
 use super::emitter::{Emitter, Source};
 use crate::prepare::Modifiers;
@@ -16,8 +16,6 @@ use rayon::prelude::*;
 const DIRECTIONS: usize = 20;
 /// Cells along each side of a distant source's beam.
 const POSITIONS: usize = 40;
-/// With fewer sources than this all samples are tested always.
-const FROM: usize = 3;
 /// Sources beyond these have no table.
 const MOST: usize = 200;
 
@@ -44,9 +42,6 @@ struct Beam {
 impl Obstacles {
     /// Finds the obstacles of `sources` in a world.
     pub(crate) fn find(sources: &[Source], world: &World, modifiers: &Modifiers) -> Self {
-        if sources.iter().filter(|s| s.sampled).count() < FROM {
-            return Self::default();
-        }
         let plain = |s: &Source| s.sampled && !s.glow && s.spot.is_none() && s.image.is_none();
         let table = |s: &Source| if plain(s) { Table::of(s, world, modifiers) } else { Table::default() };
         Self { tables: sources[..sources.len().min(MOST)].par_iter().map(table).collect() }
@@ -64,8 +59,12 @@ impl Obstacles {
     ) -> bool {
         let Some(table) = self.tables.get(id) else { return false };
         let Some(obstacle) = table.at(source, point) else { return false };
+        let ray = Ray { origin: point, direction: l, limit: FAR };
+        if world.bends(&ray) {
+            return false;
+        }
         let reach = source.intersect(point, l).map_or(distance, |(t, _)| t);
-        world.distance(obstacle, &Ray { origin: point, direction: l, limit: FAR }).is_some_and(|t| t < reach - EPSILON)
+        world.distance(obstacle, &ray).is_some_and(|t| t < reach - EPSILON)
     }
 }
 
