@@ -16,14 +16,7 @@ impl Sampler for Wall {
 
     fn scratch(&self) {}
 
-    fn sample(
-        &self,
-        (): &mut (),
-        _: &Cache,
-        _: &Query<()>,
-        _: SampleRay,
-        _: &mut Vec<Miss<()>>,
-    ) -> Option<Sample> {
+    fn sample(&self, (): &mut (), _: &Cache, _: &Query<()>, _: SampleRay, _: &mut Vec<Miss<()>>) -> Option<Sample> {
         None
     }
 

@@ -110,7 +110,7 @@ impl Walk<'_> {
         }
         let frame = self.function_frame(ray, &functions.placement);
         let scattered = m.distributions.iter().any(Option::is_some);
-        self.direct_with(ray, |walk, l, omega| {
+        self.direct_with(ray, None, |walk, l, omega| {
             let lambda = facing.normal.dot(l);
             if lambda.abs() <= EPSILON {
                 return Rgb::ZERO;

@@ -98,7 +98,7 @@ impl Walk<'_> {
             channels[Channel::Rdot as usize] *= -1.0;
         }
         let frame = self.function_frame(ray, &functions.placement);
-        self.direct_with(ray, |walk, l, omega| {
+        self.direct_with(ray, None, |walk, l, omega| {
             let lambda = facing.normal.dot(l);
             let behind = lambda < 0.0;
             if lambda.abs() <= EPSILON || (behind && through <= EPSILON) || (!behind && through >= 1.0 - EPSILON) {

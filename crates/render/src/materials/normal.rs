@@ -156,7 +156,8 @@ impl Walk<'_> {
         let jitter = self.tracer.options.direct.jitter;
         let lobes = Lobes { split, colour, facing, cosine, through, flat, jitter, alpha2: m.roughness * m.roughness };
         let d = ray.direction;
-        self.direct(ray, |l, omega| lobes.coefficient(d, l, omega));
+        let above = (lobes.split.through <= EPSILON).then_some(lobes.facing.normal);
+        self.direct_with(ray, above, |_, l, omega| lobes.coefficient(d, l, omega));
         true
     }
 
@@ -193,7 +194,7 @@ impl Walk<'_> {
         let white = Rgb::splat(std::f32::consts::PI);
         self.ambient(ray, white, facing.normal);
         let n = facing.normal;
-        self.direct(ray, |l, omega| {
+        self.direct_with(ray, Some(n), |_, l, omega| {
             let c = n.dot(l);
             if c > EPSILON { Rgb::splat((c * omega) as f32) } else { Rgb::ZERO }
         });

@@ -36,11 +36,16 @@ impl Walk<'_> {
     /// Adds to `ray.value` what all sources send to its hit point. `coefficient` gives the surface's response to a
     /// unit direction and a solid angle: BSDF × cosine × solid angle.
     pub(crate) fn direct(&mut self, ray: &mut Ray<'_>, coefficient: impl Fn(DVec3, f64) -> Rgb) {
-        self.direct_with(ray, |_, l, omega| coefficient(l, omega));
+        self.direct_with(ray, None, |_, l, omega| coefficient(l, omega));
     }
 
-    /// As [`Walk::direct`], for responses that take a walk to be found.
-    pub(crate) fn direct_with(&mut self, ray: &mut Ray<'_>, mut coefficient: impl FnMut(&mut Self, DVec3, f64) -> Rgb) {
+    /// As [`Walk::direct`], for responses that take a walk to be found, or that are 0 below the plane of a unit vector.
+    pub(crate) fn direct_with(
+        &mut self,
+        ray: &mut Ray<'_>,
+        above: Option<DVec3>,
+        mut coefficient: impl FnMut(&mut Self, DVec3, f64) -> Rgb,
+    ) {
         if self.tracer.scene.sources.is_empty() {
             return;
         }
@@ -55,7 +60,10 @@ impl Walk<'_> {
             f64::INFINITY
         };
         for (id, source) in scene.sources.iter().enumerate() {
-            if !source.sampled || source.is_out_of_reach(ray.point) {
+            if !source.sampled
+                || source.is_out_of_reach(ray.point)
+                || above.is_some_and(|n| source.is_below(ray.point, n, options.direct.jitter))
+            {
                 continue;
             }
             parts(source, ray.point, ratio, &mut divided);

@@ -50,6 +50,8 @@ pub(crate) struct Source {
     pub(crate) size: f64,
     /// Farthest extent from the centre.
     pub(crate) radius: f64,
+    /// No sample lies farther than this from the centre.
+    pub(crate) extent: f64,
     /// Unit normal of a flat emitter.
     pub(crate) normal: DVec3,
     /// Emitted radiance before any pattern.
@@ -142,6 +144,15 @@ impl Source {
     /// True for points that a glow is too far from to light directly.
     pub(crate) fn is_out_of_reach(&self, point: DVec3) -> bool {
         self.reach < FAR && point.distance(self.centre) > self.reach + self.radius
+    }
+
+    /// True if every sample of the given jitter lies below the plane through `point` with unit normal `n`.
+    pub(crate) fn is_below(&self, point: DVec3, n: DVec3, jitter: f64) -> bool {
+        let height = match self.emitter {
+            Emitter::Distant => self.centre.dot(n),
+            _ => (self.centre - point).dot(n),
+        };
+        height < -self.extent * jitter.max(1.0)
     }
 
     /// The sample point for coordinates in [−1,1]³ along the axes; a direction for distant sources. `bend` maps the

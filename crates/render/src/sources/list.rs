@@ -71,6 +71,7 @@ fn source(
         axes,
         size,
         radius,
+        extent: SPREAD * axes.iter().map(|a| a.length_squared()).sum::<f64>().sqrt(),
         normal,
         emission: light.emission,
         patterned: modifiers.patterned(object.modifier),
@@ -84,6 +85,9 @@ fn source(
         restrictions: Vec::new(),
     }))
 }
+
+/// How far samples may lie outside the box of a source's half-axes, where square coordinates are bent to a disc or ball.
+const SPREAD: f64 = 1.5;
 
 /// True if a spotlight of half-angle acos(`half`) about an aim at `cosine` to the normal is dropped: where it points
 /// backwards but not so far that the sine of its angle would be exceeded. (A cone wholly behind the surface lights
