@@ -136,8 +136,9 @@ impl Cache {
         self.lookup(sampler, query).map_or(Answer::Miss, Answer::Value)
     }
 
-    /// The interpolated value, if records qualify.
+    /// The interpolated value, if records of enough weight qualify.
     pub(crate) fn lookup<S: Sampler>(&self, sampler: &S, query: &Query<S::Origin>) -> Option<Rgb> {
-        self.store.lookup(&self.limits, sampler, query).answer()
+        let sum = self.store.lookup(&self.limits, sampler, query);
+        sum.answer().filter(|_| sum.is_enough(self.params.enough(query.level)))
     }
 }

@@ -78,8 +78,8 @@ impl Cache {
         }
         let mut open = window.to_vec();
         if stale {
-            let store = &self.store;
-            let found = self.look(sampler, store, misses, &open);
+            let cache = &*self;
+            let found = in_order(open.len(), FEW, FEW / 2, |i| cache.lookup(sampler, &misses[open[i]].query));
             open = settle(&open, &found, values);
         }
         let queries: Vec<Query<S::Origin>> = open.iter().map(|&k| misses[k].query).collect();
@@ -87,17 +87,6 @@ impl Cache {
         for (&k, answer) in open.iter().zip(answers) {
             values[k] = answer;
         }
-    }
-
-    /// Looks up the misses `at`, in parallel.
-    fn look<S: Sampler>(
-        &self,
-        sampler: &S,
-        store: &Store,
-        misses: &[Miss<S::Origin>],
-        at: &[usize],
-    ) -> Vec<Option<Rgb>> {
-        in_order(at.len(), FEW, FEW / 2, |i| store.lookup(&self.limits, sampler, &misses[at[i]].query).answer())
     }
 
     /// Fills the cache until every query has an answer.
@@ -110,6 +99,13 @@ impl Cache {
         let mut apart = limits.accuracy * limits.max_radius;
         let least = 0.5 * limits.accuracy * limits.min_radius;
         let mut most = FIRST;
+        // What the records around each query weigh together, where that matters.
+        let enough = self.params.enough(level);
+        let mut weights = if enough > 0.0 {
+            in_order(queries.len(), FEW, FEW / 2, |q| self.store.lookup(&limits, sampler, &queries[q]).weight)
+        } else {
+            vec![0.0; queries.len()]
+        };
         while !open.is_empty() {
             self.statistics.rounds += 1;
             let Selection { picks, maximal, blocked } = select(&limits, queries, &open, &exempt, apart, most);
@@ -126,16 +122,24 @@ impl Cache {
                 exempt[query] |= wasted[pick];
             }
             open.retain(|&q| !picked[q]);
-            let found =
-                in_order(open.len(), FEW, FEW / 2, |i| delta.lookup(&limits, sampler, &queries[open[i]]).answer());
+            let found = in_order(open.len(), FEW, FEW / 2, |i| delta.lookup(&limits, sampler, &queries[open[i]]));
+            for (&q, sum) in open.iter().zip(&found) {
+                weights[q] += sum.weight;
+            }
+            let found: Vec<_> = open
+                .iter()
+                .zip(found)
+                .map(|(&q, sum)| sum.answer().filter(|_| weights[q] >= enough || sum.is_enough(enough)))
+                .collect();
             open = settle(&open, &found, &mut values);
             if maximal {
                 apart = (0.5 * apart).max(least);
             }
         }
         // The round's records alone gave a provisional answer; all of them give the final one.
-        let last =
-            in_order(queries.len(), FEW, FEW / 2, |q| if picked[q] { None } else { self.lookup(sampler, &queries[q]) });
+        let last = in_order(queries.len(), FEW, FEW / 2, |q| {
+            if picked[q] { None } else { self.store.lookup(&limits, sampler, &queries[q]).answer() }
+        });
         for (value, last) in values.iter_mut().zip(last) {
             *value = last.unwrap_or(*value);
         }
@@ -156,7 +160,8 @@ impl Cache {
         for (&q, outcome) in picks.iter().zip(outcomes) {
             values[q] = match *outcome {
                 Outcome::Record(record, value) => {
-                    let covered = delta.lookup(&self.limits, sampler, &queries[q]).answer().is_some();
+                    let sum = delta.lookup(&self.limits, sampler, &queries[q]);
+                    let covered = sum.answer().is_some() && sum.is_enough(self.params.enough(record.level));
                     if !covered && self.insert(record) {
                         delta.insert(&record, self.params.accuracy);
                     }

@@ -51,7 +51,7 @@ pub use file::{Comparison, Fingerprint, Gravity, Mark, MarkLine, fingerprint_lin
 pub use file::{Segment, missing, remove_done, segments};
 pub use hemisphere::Hemisphere;
 pub use observe::{Clock, LEVELS, Observed};
-pub use params::{ASSUMED_REFLECTANCE, Limits, Params};
+pub use params::{ASSUMED_REFLECTANCE, Limits, OVERLAP, Params};
 pub use record::Record;
 pub use sampler::{Answer, Miss, Query, Sample, SampleRay, Sampler};
 pub use text::TextForm;

@@ -73,6 +73,11 @@ pub(crate) struct Sum {
 impl Sum {
     pub(crate) const EMPTY: Self = Self { weight: 0.0, value: Rgb::ZERO, spare: None };
 
+    /// True if the weight makes an answer; a last resort does whatever it weighs.
+    pub(crate) fn is_enough(&self, weight: f32) -> bool {
+        self.weight >= weight || self.spare.is_some()
+    }
+
     /// The interpolated value, if anything qualified.
     pub(crate) fn answer(&self) -> Option<Rgb> {
         if f64::from(self.weight) > EPSILON {

@@ -6,6 +6,13 @@ use ambit_base::{EPSILON, Rgb};
 /// It is part of the meaning of ambient files, whose records are shared between surfaces of all reflectances.
 pub const ASSUMED_REFLECTANCE: f64 = 0.5;
 
+/// The [`Params::overlap`] that leaves as many records in a picture as Radiance does, with errors no greater than its own
+/// where light falls off within the smallest spacing.
+pub const OVERLAP: f32 = 0.25;
+
+/// A record weighs at most 1, at its own place, and a little less once it has been through a file.
+const MOST_OVERLAP: f32 = 0.9;
+
 /// The options of the diffuse indirect calculation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
@@ -25,6 +32,10 @@ pub struct Params {
     pub weight: i32,
     /// `-lw`: the smallest ray weight, which limits the divisions of uncached hemispheres.
     pub min_weight: f64,
+    /// The summed weight of records (each at most 1) that a query of level 0 asks for, else it gets a record of its own;
+    /// deeper levels take any weight. Radiance takes any at level 0, too: 0. But its scanlines leave records at their
+    /// reach from each other, where picks far apart leave gaps of up to twice that: [`OVERLAP`] makes about as many.
+    pub overlap: f32,
     /// Names the set of random numbers; two runs with equal seeds agree in every bit.
     pub seed: u64,
 }
@@ -41,6 +52,7 @@ impl Default for Params {
             value: Rgb::ZERO,
             weight: 0,
             min_weight: 1e-4,
+            overlap: 0.0,
             seed: 0,
         }
     }
@@ -50,6 +62,11 @@ impl Params {
     /// True if records are stored and reused.
     pub fn caches(&self) -> bool {
         self.accuracy > EPSILON
+    }
+
+    /// The summed weight that makes an answer at a level.
+    pub(crate) fn enough(&self, level: u8) -> f32 {
+        if level == 0 { self.overlap.min(MOST_OVERLAP) } else { 0.0 }
     }
 
     /// The weight of a record asked for at depth `level` by a ray of weight `ray`: ½^level, lowered to 1.25 times the
