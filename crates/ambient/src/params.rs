@@ -8,7 +8,7 @@ pub const ASSUMED_REFLECTANCE: f64 = 0.5;
 
 /// The [`Params::overlap`] that leaves as many records in a picture as Radiance does, with errors no greater than its own
 /// where light falls off within the smallest spacing.
-pub const OVERLAP: f32 = 0.25;
+pub const OVERLAP: f32 = 0.2;
 
 /// A record weighs at most 1, at its own place, and a little less once it has been through a file.
 const MOST_OVERLAP: f32 = 0.9;
