@@ -7,6 +7,7 @@ Checks, one line of the table each:
   NAME octree        octrees of either side, frozen or not, read by both: the same answers
   NAME ambient       ambient files of either side, continued by the other
   NAME lookamb       our lookamb and theirs print both sides' ambient files alike
+  types TYPE         picture of fixtures/types/TYPE.rad, nothing random: means, and pixel by pixel
 """
 
 import concurrent.futures
@@ -22,6 +23,7 @@ from pathlib import Path
 import numpy as np
 
 import pictures
+import primitives
 import scenes
 from scenes import ROOT, Programs
 
@@ -201,6 +203,14 @@ def lookamb(scene, ours, theirs):
     return Line(check, "agrees")
 
 
+def one_type(kind, ours, theirs):
+    work = WORK / "types"
+    work.mkdir(parents=True, exist_ok=True)
+    found = primitives.compare(kind, ours, theirs, work)
+    show = lambda mean: f"mean {mean:.5f}"
+    return Line(f"types {kind}", "agrees" if found.agrees else "FAILS", show(found.ours), show(found.theirs), found.note())
+
+
 def known_differences():
     """Checks that known-differences.md lists: lines `| NAME check | reason |`."""
     path = ROOT / "known-differences.md"
@@ -218,7 +228,8 @@ def main():
     jobs = [(f, s) for s in bundled for f in (octree, lookamb, direct, sensors, cached)]
     jobs += [(ambient, s) for s in bundled if s.name in ("room", "cornell", "optics")]
     jobs += [(direct, s) for s in outside] + [(cached, s) for s in outside]
-    name = lambda job: f"{job[1].name} {job[0].__name__}"
+    jobs += [(one_type, kind) for kind in primitives.types()]
+    name = lambda job: f"types {job[1]}" if job[0] is one_type else f"{job[1].name} {job[0].__name__}"
     jobs = [j for j in jobs if not words or any(name(j).startswith(w) for w in words)]
     known, end = known_differences(), time.monotonic() + 60 * minutes
 

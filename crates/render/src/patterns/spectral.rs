@@ -86,9 +86,8 @@ impl Spectral {
                     compiler.warn(&format!("incompatible wavelength sampling for {}", scene.describe(id)));
                     return Ok(Pattern::Constant(Rgb::ONE));
                 }
-                let step = (longest - shortest) / MAX_BANDS as f64;
-                let middles = (0..MAX_BANDS).map(|i| longest - step * (i as f64 + 0.5)).collect();
-                (0, 1, Folding::bands(longest, shortest, MAX_BANDS), Data::None(middles))
+                let (folding, wavelengths) = Folding::sampled(longest.min(LONGEST), shortest.max(SHORTEST));
+                (0, 1, folding, Data::None(wavelengths))
             }
             Kind::SpecData => {
                 let table = compiler.files.table(scene, id, &scene.string(id, 1).unwrap_or_default())?;

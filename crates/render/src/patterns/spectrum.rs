@@ -4,6 +4,10 @@
 //! folding costs three products a value. A list of at most 24 values from long to short wavelengths is taken as bands
 //! around them; others are first averaged over about as many bands of the visible range. Three bands are red, green
 //! and blue themselves.
+//!
+//! A function of wavelength is sampled at steps of a twelfth of the visible range down from its longest wavelength, as
+//! many as fit; the samples then count as equal bands of all its range, and are averaged like the lists above. So did
+//! measured answers of Radiance turn out, to the last digit; a range shorter than one sample is black there, too.
 
 use super::cie::{LONGEST, Observer, SHORTEST, desaturate, rgb_of_xyz};
 use ambit_base::Rgb;
@@ -11,6 +15,18 @@ use glam::DVec3;
 
 /// Most bands that Radiance computes with.
 pub(crate) const MAX_BANDS: usize = 24;
+
+/// nm between Radiance's samples of a function of wavelength.
+const SAMPLE: f64 = (LONGEST - SHORTEST) / 12.0;
+/// Radiance places each sample at random in the middle part of its step, this much of it; the last step may end before
+/// the rest of it.
+const JITTER: f64 = 0.9;
+/// Wavelengths that stand for a sample's random place, whose mean they give: 10 nm apart.
+const PLACES: usize = 3;
+/// What a quotient may lack of a whole number by rounding.
+const ROUNDING: f64 = 1e-9;
+/// Radiance averages over the next larger number of bands, unless a quotient is this near above a whole number.
+const ALMOST_WHOLE: f64 = 0.01;
 
 /// Weights of the values of one list.
 #[derive(Clone, Debug)]
@@ -50,6 +66,25 @@ impl Folding {
         Self::averaged(&bands, (at(last) - at(0)).abs() / last as f64)
     }
 
+    /// For values of a function at the wavelengths (nm) that are returned beside, which lie from `longest` down to
+    /// `shortest`; none if the range is too short for a sample.
+    pub(crate) fn sampled(longest: f64, shortest: f64) -> (Self, Box<[f64]>) {
+        let range = longest - shortest;
+        // At most 12: the cast of what is no number, or negative, is 0.
+        let count = (range / SAMPLE + (1.0 - JITTER) + ROUNDING) as usize;
+        let place = |i: usize, k: usize| {
+            let within = 0.5 + JITTER * ((k as f64 + 0.5) / PLACES as f64 - 0.5);
+            longest - SAMPLE * (i as f64 + within)
+        };
+        let wavelengths = (0..count).flat_map(|i| (0..PLACES).map(move |k| place(i, k))).collect();
+        let step = range / count.max(1) as f64;
+        let border = |i: usize| longest - step * i as f64;
+        let bands: Vec<Band> = (0..count).map(|i| (border(i + 1), border(i))).collect();
+        let whole = Self::averaged(&bands, step).weights;
+        let weights = whole.iter().flat_map(|&w| [w / PLACES as f64; PLACES]).collect();
+        (Self { weights }, wavelengths)
+    }
+
     /// For values that hold throughout `count` equal bands from `longest` down to `shortest` (nm).
     pub(crate) fn bands(longest: f64, shortest: f64, count: usize) -> Self {
         let border = |i: usize| longest + (shortest - longest) * (i as f64 / count as f64);
@@ -69,7 +104,7 @@ impl Folding {
     fn averaged(bands: &[Band], width: f64) -> Self {
         let range = LONGEST - SHORTEST;
         // The cast of what is no number, or too large, stays in range.
-        let count = ((range / width).round() as usize).clamp(3, MAX_BANDS);
+        let count = ((range / width + (1.0 - ALMOST_WHOLE)) as usize).clamp(3, MAX_BANDS);
         let own = Self::bands(LONGEST, SHORTEST, count);
         let wide = range / count as f64;
         let weight = |&(a, b): &Band| {
@@ -93,7 +128,7 @@ mod tests {
     use super::*;
 
     /// First and last wavelength, values, and what Radiance makes of them.
-    const MEASURED: [(f64, f64, &[f64], [f32; 3]); 14] = [
+    const MEASURED: [(f64, f64, &[f64], [f32; 3]); 18] = [
         (380.0, 780.0, &[0.2, 0.4, 0.6, 0.8], [0.7, 0.5, 0.3]),
         (780.0, 380.0, &[1.0, 2.0, 3.0], [1.0, 2.0, 3.0]),
         (700.0, 500.0, &[1.0, 2.0, 3.0], [1.0, 2.0, 3.0]),
@@ -108,7 +143,40 @@ mod tests {
         (400.0, 700.0, &[0.0, 0.0, 1.0, 0.0], [0.699_337, 0.336_855_1, 0.0]),
         (400.0, 700.0, &[0.0, 0.0, 0.0, 1.0], [0.306_286_2, 0.015_898_12, 0.0]),
         (680.0, 550.0, &[0.0, 0.0, 1.0, 0.0], [0.654_952_1, 0.167_619, 0.0]),
+        (450.0, 600.0, &[1.0, 3.0, 5.0, 2.0, 4.0, 1.0], [0.361_03, 3.648_031, 1.108_96]),
+        (420.0, 660.0, &[1.0, 3.0, 5.0], [4.646_019, 3.183_493, 0.869_369]),
+        (600.0, 780.0, &[1.0, 3.0, 5.0, 2.0, 4.0, 1.0, 3.0], [1.934_477, 0.0, 0.050_145]),
+        (430.0, 655.0, &[1.0, 3.0, 5.0, 2.0, 4.0, 1.0], [2.237_072, 3.794_398, 1.825_215]),
     ];
+
+    /// Shortest and longest wavelength, and what Radiance makes of the function 1 there.
+    const SAMPLED: [(f64, f64, [f32; 3]); 14] = [
+        (380.0, 780.0, [0.999_912, 1.0001, 0.999_326]),
+        (400.0, 700.0, [0.992_195, 1.003_51, 0.979_81]),
+        (450.0, 600.0, [0.189_093, 1.111_897, 0.435_991]),
+        (600.0, 780.0, [0.686_608, 0.0, 0.001_664]),
+        (380.0, 500.0, [0.0, 0.035_301, 0.755_254]),
+        (550.0, 600.0, [0.405_437, 0.393_617, 0.0]),
+        (700.0, 780.0, [0.001_846, 0.0, 0.000_217]),
+        (453.0, 550.0, [0.0, 0.574_109, 0.451_219]),
+        (441.0, 550.0, [0.0, 0.575_021, 0.560_728]),
+        (486.0, 550.0, [0.0, 0.542_999, 0.176_719]),
+        (487.0, 550.0, [0.0, 0.546_453, 0.198_116]),
+        (510.0, 550.0, [0.0, 0.423_291, 0.061_771]),
+        (520.0, 550.0, [0.0, 0.369_356, 0.049_563]),
+        (521.0, 550.0, [0.0, 0.0, 0.0]),
+    ];
+
+    #[test]
+    fn functions_are_sampled_as_measured() {
+        for (shortest, longest, expected) in SAMPLED {
+            let (folding, wavelengths) = Folding::sampled(longest, shortest);
+            let got = folding.fold(wavelengths.iter().map(|_| 1.0));
+            let error = (got - Rgb::from(expected)).abs().max_element();
+            assert!(error <= 2e-3, "{shortest} {longest}: {got} for {expected:?}");
+            assert!(wavelengths.iter().all(|&w| shortest < w && w < longest));
+        }
+    }
 
     #[test]
     fn lists_fold_as_measured() {
