@@ -71,6 +71,33 @@ fn sensors_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
+fn systems_of_our_own_do_not_depend_on_the_number_of_threads() {
+    if foreign() {
+        return;
+    }
+    let scratch = tempfile::tempdir().expect("a scratch folder can be made");
+    let fixture = Fixture::named("leak");
+    let octree = fixture.compile(scratch.path());
+    let rays = std::fs::read(&fixture.sensors).expect("sensors are checked in");
+    let usual = |line: &str| {
+        let answers = with_threads(
+            scratch.path(),
+            |program| program.line("-h -I").line(line).arg(&octree).feed(&rays).well("rtrace").out,
+            "rtrace",
+        );
+        all_equal(line, &answers);
+        for old in [1, 2, 8] {
+            std::fs::remove_file(scratch.path().join(format!("rtrace{old}.amb"))).expect("it was just read");
+        }
+        answers[0].0.clone()
+    };
+    let plain = usual("-ab 2");
+    for line in ["--neighbor-clamping", "--spacing classical", "--actual-weights", "--unbounded-bounces"] {
+        assert!(usual(line) != plain, "{line} changes nothing");
+    }
+}
+
+#[test]
 fn the_same_command_twice_gives_the_same_bits() {
     let scratch = tempfile::tempdir().expect("a scratch folder can be made");
     let fixture = Fixture::named("lights");

@@ -1,8 +1,10 @@
 //! The cache: options, records, and questions to them.
 
 use crate::average::Average;
+use crate::clamping::Reins;
 use crate::observe::{Observer, Stopwatch};
 use crate::params::{Limits, Params};
+use crate::radii::ANISOTROPY;
 use crate::record::Record;
 use crate::sampler::{Answer, Query, Sampler};
 use crate::store::Store;
@@ -34,6 +36,10 @@ pub struct Cache {
     pub(crate) quantised: bool,
     pub(crate) statistics: Statistics,
     records: Vec<Record>,
+    /// Radii that rein each other in, if they are to.
+    reins: Option<Reins>,
+    /// Radii changed by the last record; kept for its memory.
+    changed: Vec<(u32, f64)>,
     /// Counts look-ups, if they are to be counted.
     pub(crate) observer: Option<Arc<Observer>>,
     pub(crate) stopwatch: Stopwatch,
@@ -55,6 +61,8 @@ impl Cache {
             quantised: false,
             statistics: Statistics::default(),
             records: Vec::new(),
+            reins: params.systems.neighbour_clamping.then(|| Reins::new(cube_origin, cube_edge)),
+            changed: Vec::new(),
         }
     }
 
@@ -107,11 +115,24 @@ impl Cache {
         record.radii[1] = record.radii[1].max(record.radii[0]);
         // The direction code errs by up to 0.006°.
         record.u = (record.u - record.normal * record.u.dot(record.normal)).normalize_or(record.u);
+        if let Some(reins) = &self.reins {
+            let radius = reins.allowed(record.position, unwidened(&record));
+            clamp(&mut record, radius);
+        }
         if !self.store.insert(&record, self.params.accuracy.max(0.0)) {
             return false;
         }
         self.average.add(record.value);
         self.records.push(record);
+        if let Some(reins) = &mut self.reins {
+            self.changed.clear();
+            reins.insert(record.position, unwidened(&record), &mut self.changed);
+            for &(id, radius) in &self.changed {
+                let record = &mut self.records[id as usize];
+                clamp(record, radius);
+                self.store.shrink(id, record.radii);
+            }
+        }
         true
     }
 
@@ -140,5 +161,18 @@ impl Cache {
     pub(crate) fn lookup<S: Sampler>(&self, sampler: &S, query: &Query<S::Origin>) -> Option<Rgb> {
         let sum = self.store.lookup(&self.limits, sampler, query);
         sum.answer().filter(|_| sum.is_enough(self.params.enough(query.level)))
+    }
+}
+
+/// A record's shorter radius before it was widened for its weight.
+fn unwidened(record: &Record) -> f64 {
+    f64::from(record.radii[0]) * f64::from(record.weight).sqrt()
+}
+
+/// Lowers the shorter radius to `radius`, before widening, and the longer with it: their ratio is 2 at most.
+fn clamp(record: &mut Record, radius: f64) {
+    let shorter = (radius / f64::from(record.weight).sqrt()) as f32;
+    if shorter < record.radii[0] {
+        record.radii = [shorter, record.radii[1].min(ANISOTROPY as f32 * shorter)];
     }
 }

@@ -1,8 +1,8 @@
 //! Azimuths in which something stands nearer than the record reaches: 32 bits, for which look-ups trace a short ray.
 
+use crate::grid::Grid;
 use crate::lookup::sector_of_angle;
 use ambit_base::{DVec3, EPSILON};
-use std::f64::consts::PI;
 
 /// Sides of the grid below which the border is too coarse to tell azimuths.
 const MIN_SIDE: usize = 8;
@@ -13,23 +13,18 @@ const MIN_SIDE: usize = 8;
 ///
 /// Radiance skips occluders nearer than R₋a + 0.001, since its probe would reject the record at its own place; the
 /// look-up here accepts coincident queries without a probe, so the nearest occluders count too.
-pub(crate) fn corral(n: usize, points: &[DVec3], nearness: &[f64], reach: [f64; 2], turn: f64) -> u32 {
-    if n < MIN_SIDE {
+pub(crate) fn corral(grid: Grid, points: &[DVec3], nearness: &[f64], reach: [f64; 2], turn: f64) -> u32 {
+    if grid.side() < MIN_SIDE {
         return 0;
     }
-    // The ceiling: the middle half of the grid each way.
-    let (from, to) = (n / 4, n - n / 4);
-    let mut overhead = 0.0;
-    for i in from..to {
-        overhead += nearness[i * n + from..i * n + to].iter().sum::<f64>();
-    }
-    overhead /= ((to - from) * (to - from)) as f64;
+    let ceiling = grid.ceiling();
+    let overhead = ceiling.iter().map(|&c| nearness[c]).sum::<f64>() / ceiling.len() as f64;
     if overhead * reach[0] >= 1.0 {
         return 0;
     }
-    let spread = PI / (2.0 * n as f64);
+    let spread = grid.spread();
     let mut bits = 0u32;
-    for cell in border(n) {
+    for cell in grid.border() {
         let (near, p) = (nearness[cell], points[cell]);
         let flat = p.x.hypot(p.y);
         if near <= EPSILON || flat == 0.0 {
@@ -60,6 +55,7 @@ pub(crate) fn border(n: usize) -> impl Iterator<Item = usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn a_wall_on_one_side_sets_the_bits_of_that_side() {
@@ -73,7 +69,7 @@ mod tests {
             .collect();
         // A wall at x = 0.1: distance 0.1/p where p > 0.
         let nearness: Vec<f64> = points.iter().map(|p| (p.x / 0.1).max(0.0)).collect();
-        let bits = corral(n, &points, &nearness, [0.2, 0.2], 0.0);
+        let bits = corral(Grid::Disk { side: 32 }, &points, &nearness, [0.2, 0.2], 0.0);
         // cos φ > 0.1/0.2, so azimuths within ±60°: sectors 27…31 and 0…5, those at the ends cut by the border's tilt.
         for k in [0, 1, 2, 3, 28, 29, 30, 31] {
             assert!(bits >> k & 1 == 1, "sector {k} of {bits:032b}");
@@ -82,11 +78,11 @@ mod tests {
             assert!(bits >> k & 1 == 0, "sector {k} of {bits:032b}");
         }
         // Turned axes: the wall moves from azimuth 0 to −90°.
-        let turned = corral(n, &points, &nearness, [0.2, 0.2], PI / 2.0);
+        let turned = corral(Grid::Disk { side: 32 }, &points, &nearness, [0.2, 0.2], PI / 2.0);
         assert_eq!(turned, bits.rotate_right(8));
-        assert_eq!(corral(n, &points, &nearness, [0.01, 0.01], 0.0), 0);
+        assert_eq!(corral(Grid::Disk { side: 32 }, &points, &nearness, [0.01, 0.01], 0.0), 0);
         let ceiling = vec![100.0; n * n];
-        assert_eq!(corral(n, &points, &ceiling, [0.2, 0.2], 0.0), 0);
+        assert_eq!(corral(Grid::Disk { side: 32 }, &points, &ceiling, [0.2, 0.2], 0.0), 0);
     }
 
     #[test]

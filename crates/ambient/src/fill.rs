@@ -13,7 +13,6 @@ use crate::finish::{Cell, Outcome, finish, least_distance};
 use crate::gather::{Job, Sampled, trace};
 use crate::hemisphere::Hemisphere;
 use crate::parallel::in_order;
-use crate::params::Params;
 use crate::sampler::{Miss, Query, Sampler};
 use crate::select::{CAP, Selection, select};
 use crate::store::Store;
@@ -157,6 +156,7 @@ impl Cache {
     ) -> Store {
         let fallback = self.fallback();
         let mut delta = self.store.emptied();
+        let first = self.records().len();
         for (&q, outcome) in picks.iter().zip(outcomes) {
             values[q] = match *outcome {
                 Outcome::Record(record, value) => {
@@ -174,6 +174,13 @@ impl Cache {
                 Outcome::Nothing => fallback,
             };
         }
+        if self.params.systems.neighbour_clamping {
+            // Those of this round may have reined each other in.
+            delta = self.store.emptied();
+            for record in &self.records()[first..] {
+                delta.insert(record, self.params.accuracy);
+            }
+        }
         delta
     }
 
@@ -188,7 +195,7 @@ impl Cache {
         let params = self.params;
         let mut picks: Vec<Pick> = in_order(chosen.len(), 2, 1, |k| {
             let q = &queries[chosen[k]];
-            let weight = Params::record_weight(level, q.weight);
+            let weight = self.limits.record_weight(level, q.weight);
             let stream = Stream::new(0, key(q, params.seed));
             Hemisphere::new(&params, weight, 1.0, q.normal, stream, true).map(|plan| Pick {
                 query: chosen[k],
@@ -244,13 +251,14 @@ impl Cache {
         let wanted: Vec<Vec<(usize, u32)>> = in_order(picks.len(), 2, 1, |k| {
             let Pick { query, plan, first } = &picks[k];
             let own = &cells[*first..first + plan.len()];
-            let weight = Params::record_weight(level, queries[*query].weight);
-            let budget = budget(params.super_samples, weight, plan.side());
+            let weight = self.limits.record_weight(level, queries[*query].weight);
+            let budget = budget(params.super_samples, weight, plan.grid().side());
             if budget == 0 || own.iter().any(|c| c.distance <= 0.0) {
                 return Vec::new();
             }
             let brightness: Vec<f32> = own.iter().map(|c| c.radiance.brightness()).collect();
-            let counts = allocate(plan.side(), &brightness, budget, |cell| plan.share(cell));
+            let counts =
+                allocate([plan.grid().rows(), plan.grid().columns()], &brightness, budget, |cell| plan.share(cell));
             counts.iter().enumerate().flat_map(|(cell, &m)| (0..m).map(move |k| (cell, k))).collect()
         });
         if wanted.iter().all(Vec::is_empty) {

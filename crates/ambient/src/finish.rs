@@ -1,11 +1,13 @@
 //! From the samples of a hemisphere to a record: mean, gradients, radii, corral.
 
+use crate::classical;
 use crate::corral::{border, corral};
+use crate::grid::Grid;
 use crate::hemisphere::Hemisphere;
 use crate::lookup::{MAX_FACTOR, MIN_FACTOR};
 use crate::mesh::{Derivatives, cover, mesh, rotational};
-use crate::params::{Limits, Params};
-use crate::radii::{Ellipse, circle, ellipse, turned};
+use crate::params::Limits;
+use crate::radii::{Ellipse, circle, ellipse, split_sphere, turned};
 use crate::record::Record;
 use crate::sampler::Query;
 use ambit_base::{Colour, DVec3, EPSILON, Rgb};
@@ -64,7 +66,7 @@ pub(crate) fn least_distance(limits: &Limits) -> f64 {
 
 /// Turns cells into a record.
 pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, cells: &[Cell]) -> Outcome {
-    let n = plan.side();
+    let grid = plan.grid();
     let share = 1.0 / cells.len() as f64;
     let taken = cells.iter().filter(|c| c.distance > 0.0).count();
     if taken == 0 {
@@ -75,28 +77,21 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
     if taken < cells.len() {
         return Outcome::Once(value);
     }
-    let weight = Params::record_weight(query.level, query.weight);
+    let weight = limits.record_weight(query.level, query.weight);
     let directions: Vec<DVec3> = (0..cells.len()).map(|c| plan.local(c)).collect();
     let nearness: Vec<f64> = cells.iter().map(|c| c.nearness).collect();
     let mean = value.mean();
     let far = 10.0 * limits.edge + 1000.0;
     let points: Vec<DVec3> = directions.iter().zip(cells).map(|(d, c)| *d * c.distance.min(far)).collect();
     let lit = f64::from(mean) > BLACK;
-    let (derivatives, rotation, least) = if lit {
-        let relative = |c: &Cell| (1.0 - FLOOR) * (f64::from(c.radiance.mean() / mean) - 1.0);
-        let values: Vec<f64> = cells.iter().map(relative).collect();
-        let crowd = 1.0 / (VERY_NEAR * limits.min_radius * limits.accuracy);
-        let crowded = border(n).filter(|&c| nearness[c] > crowd).count() as f64;
-        let least = crowded > CROWDED * border(n).count() as f64;
-        (mesh(n, &points, &values), rotational(n, &directions, &values), least)
+    let values: Vec<f64> = if lit {
+        cells.iter().map(|c| f64::from(c.radiance.mean() / mean) - 1.0).collect()
     } else {
-        // Nothing tells how far the dark reaches but the surroundings' shape.
-        (Derivatives { gradient: [0.0; 2], ..cover(n, &points) }, [0.0; 2], false)
+        vec![0.0; cells.len()]
     };
-    let shape = if derivatives.is_finite() {
-        ellipse(&derivatives, limits, weight, least)
-    } else {
-        harmonic(&nearness, limits, weight)
+    let (shape, rotation) = match grid {
+        Grid::Disk { .. } => curved(limits, weight, grid, &points, &directions, &nearness, lit.then_some(values)),
+        Grid::Polar { .. } => split(limits, weight, grid, &values, cells, &nearness),
     };
     let rotation = turned(rotation, shape.turn);
     let reach = shape.radii.map(|r| r * limits.accuracy);
@@ -112,17 +107,63 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
         radii: shape.radii.map(|r| r as f32),
         gradient: shape.gradient.map(|g| g as f32),
         rotation: rotation.map(|h| h as f32),
-        corral: corral(n, &directions, &nearness, reach, shape.turn),
+        corral: corral(grid, &directions, &nearness, reach, shape.turn),
         value,
     };
     if record.is_plausible() { Outcome::Record(record, answer(&record, query)) } else { Outcome::Once(value) }
 }
 
+/// The ellipse of the Hessian and the rotational gradient; `values` are relative radiances less 1, none in the dark.
+fn curved(
+    limits: &Limits,
+    weight: f32,
+    grid: Grid,
+    points: &[DVec3],
+    directions: &[DVec3],
+    nearness: &[f64],
+    values: Option<Vec<f64>>,
+) -> (Ellipse, [f64; 2]) {
+    let n = grid.side();
+    let (derivatives, rotation, least) = if let Some(mut values) = values {
+        for v in &mut values {
+            *v *= 1.0 - FLOOR;
+        }
+        let crowd = 1.0 / (VERY_NEAR * limits.min_radius * limits.accuracy);
+        let crowded = border(n).filter(|&c| nearness[c] > crowd).count() as f64;
+        let least = crowded > CROWDED * border(n).count() as f64;
+        (mesh(n, points, &values), rotational(n, directions, &values), least)
+    } else {
+        // Nothing tells how far the dark reaches but the surroundings' shape.
+        (Derivatives { gradient: [0.0; 2], ..cover(n, points) }, [0.0; 2], false)
+    };
+    let shape = if derivatives.is_finite() {
+        ellipse(&derivatives, limits, weight, least)
+    } else {
+        harmonic(nearness, limits, weight)
+    };
+    (shape, rotation)
+}
+
+/// The circle of the split sphere and the classical gradients.
+fn split(
+    limits: &Limits,
+    weight: f32,
+    grid: Grid,
+    values: &[f64],
+    cells: &[Cell],
+    nearness: &[f64],
+) -> (Ellipse, [f64; 2]) {
+    let (rings, sectors) = (grid.rows(), grid.columns());
+    let distances: Vec<f64> = cells.iter().map(|c| c.distance).collect();
+    let gradient = classical::translational(rings, sectors, values, &distances);
+    let rotation = classical::rotational(rings, sectors, values);
+    let radius = classical::harmonic_mean(nearness).unwrap_or(limits.max_radius);
+    (split_sphere(radius, gradient, limits, weight), rotation)
+}
+
 /// Without derivatives the harmonic mean of the sample distances tells how fast light may change.
 fn harmonic(nearness: &[f64], limits: &Limits, weight: f32) -> Ellipse {
-    let sum: f64 = nearness.iter().sum();
-    let radius = if sum > 0.0 { nearness.len() as f64 / sum } else { limits.max_radius };
-    circle(radius, limits, weight)
+    circle(classical::harmonic_mean(nearness).unwrap_or(limits.max_radius), limits, weight)
 }
 
 /// What a record answers at its own place, for a shading normal that textures may have turned.

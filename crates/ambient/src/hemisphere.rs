@@ -1,10 +1,11 @@
 //! The plan of one hemisphere of samples: an n × n grid mapped to the disk so that every cell has equal projected solid
 //! angle (Nusselt analog; Shirley & Chiu 1997 for the concentric map), a random point a cell, a random turn about the normal.
 
-use crate::params::{ASSUMED_REFLECTANCE, Params};
+use crate::grid::Grid;
+use crate::params::{ASSUMED_REFLECTANCE, Params, Spacing};
 use crate::sampler::SampleRay;
 use crate::separation::separated;
-use ambit_base::{DVec3, EPSILON, Frame, Stream, square_to_disk};
+use ambit_base::{DVec3, EPSILON, Frame, Stream};
 use std::f64::consts::TAU;
 
 /// Sides of the grid below which no record is made (49 samples).
@@ -31,7 +32,7 @@ pub(crate) mod tag {
 #[derive(Clone, Debug)]
 pub struct Hemisphere {
     frame: Frame,
-    side: u32,
+    grid: Grid,
     stream: Stream,
     child_weight: f32,
     /// Points of the unit disk, one a cell, where they have been kept apart; else they are drawn when asked for.
@@ -62,21 +63,24 @@ impl Hemisphere {
         }
         let least = if caching { MIN_SIDE } else { 1 };
         let side = (((divisions * weight).sqrt() + 0.5) as u32).clamp(least, MAX_SIDE);
+        let classical = caching && params.systems.spacing == Spacing::Classical;
+        let grid = if classical { Grid::polar(divisions * weight) } else { Grid::Disk { side } };
         let child_weight = if caching { ASSUMED_REFLECTANCE as f32 } else { coefficient / (side * side) as f32 };
         let frame = Frame::turned(normal, TAU * stream.child(tag::TURN).one());
-        let points = if caching && side >= SEPARATED_SIDE { separated(side, stream) } else { Vec::new() };
-        Some(Self { frame, side, stream, child_weight, points })
+        let apart = caching && !classical && side >= SEPARATED_SIDE;
+        let points = if apart { separated(side, stream) } else { Vec::new() };
+        Some(Self { frame, grid, stream, child_weight, points })
     }
 
-    /// Cells along one side of the grid.
-    pub fn side(&self) -> usize {
-        self.side as usize
+    /// How it is divided.
+    pub(crate) fn grid(&self) -> Grid {
+        self.grid
     }
 
     /// The number of cells, each of projected solid angle π/len.
     #[expect(clippy::len_without_is_empty, reason = "a hemisphere always has cells")]
     pub fn len(&self) -> usize {
-        self.side() * self.side()
+        self.grid.len()
     }
 
     /// What the weight of a sample's ray is multiplied by, beside the medium's extinction.
@@ -92,10 +96,10 @@ impl Hemisphere {
     /// The sample direction of a cell in the frame (x, y tangential, z along the normal, positive), unit length. Cell
     /// `row · side + column`.
     pub(crate) fn local(&self, cell: usize) -> DVec3 {
-        match self.points.get(cell) {
-            Some(&point) => raise(point),
-            None => lift(cell_point(self.side, cell, self.stream)),
+        if let Some(&point) = self.points.get(cell) {
+            return raise(point);
         }
+        raise(self.grid.point(cell, self.stream.child(tag::CELL ^ (cell as u64) << 32).two()))
     }
 
     /// The sample direction of a cell, unit length, world coordinates.
@@ -105,8 +109,7 @@ impl Hemisphere {
 
     /// The direction of the `k`-th extra sample of a cell, in the frame.
     pub(crate) fn extra_local(&self, cell: usize, k: u32) -> DVec3 {
-        let [s, t] = self.stream.split(tag::EXTRA ^ (cell as u64) << 32, k).two();
-        lift(in_cell(self.side, cell, s, t))
+        raise(self.grid.point(cell, self.stream.split(tag::EXTRA ^ (cell as u64) << 32, k).two()))
     }
 
     /// The ray of a sample.
@@ -117,7 +120,11 @@ impl Hemisphere {
     /// The random numbers of a sample's ray.
     pub fn stream(&self, sample: usize) -> Stream {
         // A lone sample is stratified with those of neighbouring hemispheres, several with each other.
-        if self.side == 1 { self.stream.child(tag::RAY) } else { self.stream.split(tag::RAY, sample as u32) }
+        if self.grid == (Grid::Disk { side: 1 }) {
+            self.stream.child(tag::RAY)
+        } else {
+            self.stream.split(tag::RAY, sample as u32)
+        }
     }
 
     /// The numbers that round the shares of extra samples.
@@ -137,11 +144,6 @@ pub(crate) fn in_cell(side: u32, cell: usize, s: f64, t: f64) -> [f64; 2] {
 pub(crate) fn cell_point(side: u32, cell: usize, stream: Stream) -> [f64; 2] {
     let [s, t] = stream.child(tag::CELL ^ (cell as u64) << 32).two();
     in_cell(side, cell, s, t)
-}
-
-/// From the square to the hemisphere.
-fn lift([x, y]: [f64; 2]) -> DVec3 {
-    raise(square_to_disk(x, y))
 }
 
 /// From the disk to the hemisphere.

@@ -19,12 +19,15 @@
 
 mod average;
 mod cache;
+mod clamping;
+mod classical;
 mod codec;
 mod corral;
 mod file;
 mod fill;
 mod finish;
 mod gather;
+mod grid;
 mod hemisphere;
 mod lookup;
 mod mesh;
@@ -51,7 +54,7 @@ pub use file::{Comparison, Fingerprint, Gravity, Mark, MarkLine, fingerprint_lin
 pub use file::{Segment, missing, remove_done, segments};
 pub use hemisphere::Hemisphere;
 pub use observe::{Clock, LEVELS, Observed};
-pub use params::{ASSUMED_REFLECTANCE, Limits, OVERLAP, Params};
+pub use params::{ASSUMED_REFLECTANCE, Limits, OVERLAP, Params, Spacing, Systems};
 pub use record::Record;
 pub use sampler::{Answer, Miss, Query, Sample, SampleRay, Sampler};
 pub use text::TextForm;

@@ -38,6 +38,29 @@ pub struct Params {
     pub overlap: f32,
     /// Names the set of random numbers; two runs with equal seeds agree in every bit.
     pub seed: u64,
+    /// Systems beyond Radiance's, all off by default.
+    pub systems: Systems,
+}
+
+/// Systems of the cache that Radiance does not have, each with a switch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Systems {
+    /// `--actual-weights`: records and their samples weigh what the reflectances on the path come to, instead of ½^level.
+    pub actual_weights: bool,
+    /// `--neighbor-clamping`: no radius exceeds another record's by more than the distance between them.
+    pub neighbour_clamping: bool,
+    /// `--spacing`: what decides how far records reach.
+    pub spacing: Spacing,
+}
+
+/// What decides how far records reach.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spacing {
+    /// The curvature of irradiance, from the Hessian of the sampled surroundings; ellipses.
+    #[default]
+    Hessian,
+    /// The harmonic mean distance of the surroundings (split sphere), with the gradients of Ward & Heckbert 1992; circles.
+    Classical,
 }
 
 impl Default for Params {
@@ -54,6 +77,7 @@ impl Default for Params {
             min_weight: 1e-4,
             overlap: 0.0,
             seed: 0,
+            systems: Systems::default(),
         }
     }
 }
@@ -94,6 +118,8 @@ pub struct Limits {
     /// 1, or the cube's edge where that is smaller: what the absolute tolerances of the method are scaled by, so that
     /// models in very small units keep their light.
     pub unit: f64,
+    /// Records weigh what the asking ray does.
+    pub actual_weights: bool,
 }
 
 /// The angle two normals may always differ by, radians; the tolerance is added to it.
@@ -119,7 +145,21 @@ impl Limits {
         if max_radius <= min_radius {
             max_radius = 64.0 * min_radius;
         }
-        Self { accuracy: params.accuracy, min_radius, max_radius, edge, max_angle: BASE_ANGLE + params.accuracy, unit }
+        Self {
+            accuracy: params.accuracy,
+            min_radius,
+            max_radius,
+            edge,
+            max_angle: BASE_ANGLE + params.accuracy,
+            unit,
+            actual_weights: params.systems.actual_weights,
+        }
+    }
+
+    /// The weight of a record asked for at depth `level` by a ray of weight `ray`: that of [`Params::record_weight`], or
+    /// the ray's own where actual weights count.
+    pub fn record_weight(&self, level: u8, ray: f32) -> f32 {
+        if self.actual_weights { ray.clamp(f32::MIN_POSITIVE, 1.0) } else { Params::record_weight(level, ray) }
     }
 
     /// The angle by which normals may differ for a query of the given weight: it opens for dim rays.
@@ -168,5 +208,20 @@ mod tests {
             assert!((Params::record_weight(level, ray) - expected).abs() < 1e-6);
         }
         assert!(Params::record_weight(0, 0.0) > 0.0);
+    }
+
+    #[test]
+    fn actual_weights_are_those_of_rays() {
+        let systems = Systems { actual_weights: true, ..Systems::default() };
+        let limits = Limits::new(&Params { systems, ..Params::default() }, 1.0);
+        for (level, ray, expected) in [(0, 1.0, 1.0), (1, 0.9, 0.9), (3, 0.729, 0.729), (2, 0.01, 0.01), (0, 1.5, 1.0)]
+        {
+            assert_eq!(limits.record_weight(level, ray), expected);
+            assert_eq!(
+                Limits::new(&Params::default(), 1.0).record_weight(level, ray),
+                Params::record_weight(level, ray)
+            );
+        }
+        assert!(limits.record_weight(0, 0.0) > 0.0);
     }
 }

@@ -11,7 +11,7 @@ use std::f64::consts::FRAC_PI_2;
 /// Eigenvalues below this fraction of 1/edge² are no curvature at all.
 const FLAT: f64 = 1e-12;
 /// The longer radius is at most this times the shorter.
-const ANISOTROPY: f64 = 2.0;
+pub(crate) const ANISOTROPY: f64 = 2.0;
 
 /// An ellipse in the tangent plane and the gradient in its axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +68,16 @@ pub(crate) fn circle(radius: f64, limits: &Limits, weight: f32) -> Ellipse {
     let r = radius.max(limits.min_radius);
     let (r0, r1) = widened([r, r], limits, weight);
     Ellipse { turn: 0.0, radii: [r0, r1], gradient: [0.0; 2] }
+}
+
+/// The circle of the split sphere (Ward, Rubinstein, Clear 1988): the harmonic mean distance, but not so far that the
+/// value would change by more than itself; where the smallest radius is larger, it tames the gradient.
+pub(crate) fn split_sphere(radius: f64, gradient: [f64; 2], limits: &Limits, weight: f32) -> Ellipse {
+    let steepness = gradient[0].hypot(gradient[1]);
+    let radius = radius.min(1.0 / steepness);
+    let tamed = (1.0 / (steepness * limits.min_radius)).min(1.0);
+    let gradient = if radius < limits.min_radius { gradient.map(|g| g * tamed) } else { gradient };
+    Ellipse { gradient, ..circle(radius, limits, weight) }
 }
 
 /// Radii widened by 1/√weight and limited in their ratio and size.

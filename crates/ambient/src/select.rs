@@ -1,6 +1,6 @@
 //! Which misses are computed together: in order, each unless one chosen before could answer it.
 
-use crate::params::{Limits, Params};
+use crate::params::Limits;
 use crate::sampler::Query;
 
 /// The most hemispheres of a round. Part of the result, so it must not depend on the number of threads.
@@ -50,7 +50,7 @@ pub(crate) fn select<O>(
             blocked.push((at, pick));
         } else {
             picks.push(at);
-            weights.push(Params::record_weight(q.level, q.weight));
+            weights.push(limits.record_weight(q.level, q.weight));
         }
     }
     Selection { picks, maximal: true, blocked }

@@ -145,6 +145,11 @@ impl Store {
         true
     }
 
+    /// Lowers the radii of a record, the so-manieth inserted. It stays listed where it was: a little to search, nothing wrong.
+    pub(crate) fn shrink(&mut self, id: u32, radii: [f32; 2]) {
+        self.places[id as usize].inverse_radii = radii.map(f32::recip);
+    }
+
     /// True if the cell at `depth` around a record lists one like it.
     fn is_duplicate(&self, record: &Record, place: &Place, depth: u32, accuracy: f64) -> bool {
         let (mut edge, mut corner, mut node) = (self.edge, self.corner, &self.nodes[0]);

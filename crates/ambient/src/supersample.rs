@@ -12,9 +12,10 @@ pub(crate) fn budget(super_samples: i32, weight: f32, n: usize) -> usize {
     if n >= MIN_SIDE && m >= MIN_PER_SIDE * n { m } else { 0 }
 }
 
-/// The number of extra samples of each cell; `brightness` row by row, `chance` a random number a cell.
-pub(crate) fn allocate(n: usize, brightness: &[f32], budget: usize, chance: impl Fn(usize) -> f64) -> Vec<u32> {
-    let mut error = blurred(n, &differences(n, brightness));
+/// The number of extra samples of each cell of a grid of `size` rows and columns; `brightness` row by row, `chance` a random
+/// number a cell. The last column of rings does not know the first: cells on a border make up for missing neighbours.
+pub(crate) fn allocate(size: [usize; 2], brightness: &[f32], budget: usize, chance: impl Fn(usize) -> f64) -> Vec<u32> {
+    let mut error = blurred(size, &differences(size, brightness));
     // Left to go: summed from the end so that the last share takes what remains.
     let mut left = vec![0.0; error.len() + 1];
     for i in (0..error.len()).rev() {
@@ -37,8 +38,8 @@ pub(crate) fn allocate(n: usize, brightness: &[f32], budget: usize, chance: impl
 
 /// The difference measure: (b − b′)²/(b + b′) over pairs left–right, up–down and along one diagonal, added to both;
 /// cells on the border have fewer neighbours and count 6/5, corners 6/3.
-fn differences(n: usize, brightness: &[f32]) -> Vec<f64> {
-    let mut error = vec![0.0; n * n];
+fn differences([rows, n]: [usize; 2], brightness: &[f32]) -> Vec<f64> {
+    let mut error = vec![0.0; rows * n];
     let mut pair = |a: usize, b: usize| {
         let (x, y) = (f64::from(brightness[a]), f64::from(brightness[b]));
         if x + y > 0.0 {
@@ -47,7 +48,7 @@ fn differences(n: usize, brightness: &[f32]) -> Vec<f64> {
             error[b] += e;
         }
     };
-    for i in 0..n {
+    for i in 0..rows {
         for j in 0..n {
             let cell = i * n + j;
             if j > 0 {
@@ -61,10 +62,10 @@ fn differences(n: usize, brightness: &[f32]) -> Vec<f64> {
             }
         }
     }
-    let outer = |k: usize| k == 0 || k == n - 1;
-    for i in 0..n {
+    let outer = |k: usize, of: usize| k == 0 || k == of - 1;
+    for i in 0..rows {
         for j in 0..n {
-            error[i * n + j] *= match (outer(i), outer(j)) {
+            error[i * n + j] *= match (outer(i, rows), outer(j, n)) {
                 (true, true) => 6.0 / 3.0,
                 (true, false) | (false, true) => 6.0 / 5.0,
                 (false, false) => 1.0,
@@ -75,13 +76,13 @@ fn differences(n: usize, brightness: &[f32]) -> Vec<f64> {
 }
 
 /// Half a cell's own and an eighth of each of the four neighbours'.
-fn blurred(n: usize, error: &[f64]) -> Vec<f64> {
+fn blurred([rows, n]: [usize; 2], error: &[f64]) -> Vec<f64> {
     let at = |i: Option<usize>, j: Option<usize>| match (i, j) {
-        (Some(i), Some(j)) if i < n && j < n => error[i * n + j],
+        (Some(i), Some(j)) if i < rows && j < n => error[i * n + j],
         _ => 0.0,
     };
-    let mut out = Vec::with_capacity(n * n);
-    for i in 0..n {
+    let mut out = Vec::with_capacity(rows * n);
+    for i in 0..rows {
         for j in 0..n {
             let around = at(i.checked_sub(1), Some(j))
                 + at(Some(i + 1), Some(j))
@@ -108,14 +109,14 @@ mod tests {
 
     #[test]
     fn uniform_hemispheres_need_no_extra_samples() {
-        assert!(allocate(8, &[3.0; 64], 64, |_| 0.5).iter().all(|&c| c == 0));
-        assert!(allocate(8, &[0.0; 64], 64, |_| 0.5).iter().all(|&c| c == 0));
+        assert!(allocate([8, 8], &[3.0; 64], 64, |_| 0.5).iter().all(|&c| c == 0));
+        assert!(allocate([8, 8], &[0.0; 64], 64, |_| 0.5).iter().all(|&c| c == 0));
     }
 
     #[test]
     fn samples_gather_at_an_edge_and_the_budget_is_kept() {
         let brightness: Vec<f32> = (0..256).map(|c| if c % 16 < 8 { 1.0 } else { 0.1 }).collect();
-        let counts = allocate(16, &brightness, 256, |c| (c as f64 * 0.618).fract());
+        let counts = allocate([16, 16], &brightness, 256, |c| (c as f64 * 0.618).fract());
         let total: u32 = counts.iter().sum();
         assert!((250..=256).contains(&total), "{total}");
         let edge: u32 = (0..16).map(|i| counts[i * 16 + 7] + counts[i * 16 + 8]).sum();

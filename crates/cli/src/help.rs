@@ -66,7 +66,8 @@ fn heading(flag: &str) -> &'static str {
         "pRGB" | "pXYZ" | "pc" | "pY" | "pS" | "pM" | "pA" | "co" | "fIO" | "o" | "h" | "ro" | "r" | "z" | "S" => {
             "Output"
         }
-        "-reuse" | "-stats" => "Interreflection",
+        "-reuse" | "-stats" | "-unbiased" | "-unbounded-bounces" | "-exact-textures" | "-actual-weights"
+        | "-neighbor-clamping" | "-spacing" => "Interreflection",
         _ => match flag.as_bytes()[0] {
             b'v' => "View",
             b'd' => "Direct light",

@@ -20,6 +20,7 @@ mod rendering;
 mod scan;
 mod signals;
 mod spec;
+mod systems;
 mod table;
 mod viewing;
 

@@ -2,6 +2,7 @@
 
 use crate::common::{Carries, Common};
 use crate::failure::Failure;
+use crate::systems::system_rows;
 use crate::table::{Label, Place, Row};
 use ambit_render::{Options, Reuse, Selection};
 
@@ -307,6 +308,7 @@ pub(crate) fn rendering_rows<S: Carries<Rendering> + Carries<Common>>() -> Vec<R
     ];
     rows.extend(limit_rows());
     rows.extend(file_rows());
+    rows.extend(system_rows());
     rows
 }
 

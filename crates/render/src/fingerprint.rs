@@ -8,7 +8,7 @@
 
 use crate::prepare::{Contents, Definition, Environment, Loaded};
 use crate::{Options, Selection};
-use ambit_ambient::{Fingerprint, Gravity, Mark, MarkLine};
+use ambit_ambient::{Fingerprint, Gravity, Mark, MarkLine, Spacing};
 use ambit_base::{Rgb, hash_bits, hash_point, mix};
 use ambit_file::{encode_float, general};
 use ambit_octree::Mesh;
@@ -286,7 +286,20 @@ fn option_marks(options: &Options, edge: f64) -> Vec<Mark> {
         slight("lr", "-lr", options.limits.reflections.to_string()),
         slight("lw", "-lw", g(options.limits.weight)),
         slight("ms", "-ms", g(medium.sampling)),
+        // Ours; the files of older versions do not have them, and do not differ.
+        decisive("unbounded", "--unbounded-bounces", switch(a.unbounded)),
+        slight("spacing", "--spacing", spacing(a.systems.spacing).to_owned()),
+        slight("clamping", "--neighbor-clamping", switch(a.systems.neighbour_clamping)),
+        slight("weights", "--actual-weights", switch(a.systems.actual_weights)),
     ]
+}
+
+/// The word of the option.
+fn spacing(spacing: Spacing) -> &'static str {
+    match spacing {
+        Spacing::Hessian => "hessian",
+        Spacing::Classical => "classical",
+    }
 }
 
 /// The names, in no order.

@@ -31,9 +31,10 @@ impl Walk<'_> {
             shading,
             weight: ray.weight,
             level: ray.depth,
-            origin: Origin::of(ray, transmitted),
+            origin: Origin::of(ray, transmitted, coefficient.max_element().min(1.0)),
         };
         match self.cache.ask(self.tracer, &query) {
+            Answer::Fallback(_) if self.is_endless() => self.survive(ray, coefficient, query),
             Answer::Value(v) | Answer::Fallback(v) => ray.value += coefficient * v,
             Answer::Miss => {
                 let k = ray.throughput * ray.attenuation() * coefficient;
@@ -47,7 +48,8 @@ impl Walk<'_> {
     fn hemisphere(&mut self, ray: &mut Ray<'_>, coefficient: Rgb, normal: DVec3, shading: DVec3, transmitted: bool) {
         let params = self.cache.params();
         let stream = ray.stream.child(HEMISPHERE + u64::from(transmitted));
-        let Some(plan) = Hemisphere::new(params, ray.weight, coefficient.max_element(), normal, stream, false) else {
+        let about = if self.tracer.options.ambient.exact_textures { shading } else { normal };
+        let Some(plan) = Hemisphere::new(params, ray.weight, coefficient.max_element(), about, stream, false) else {
             ray.value += coefficient * self.cache.fallback();
             return;
         };
@@ -57,6 +59,11 @@ impl Walk<'_> {
         let mut tilt = Tilt::default();
         let mut alive = 0;
         for cell in 0..plan.len() {
+            if about != normal && plan.direction(cell).dot(normal) <= 0.0 {
+                // Below the surface there is nothing to be seen.
+                alive += 1;
+                continue;
+            }
             let Some(mut child) = self.child(ray, kind, plan.direction(cell), k, cell as u64) else { continue };
             child.stream = plan.stream(cell);
             self.evaluate(&mut child);
@@ -65,7 +72,7 @@ impl Walk<'_> {
             tilt.add(&plan, cell, light);
             sum += light;
         }
-        if alive == 0 {
+        if alive == 0 && !self.is_endless() {
             ray.value += coefficient * self.cache.fallback();
             return;
         }

@@ -18,10 +18,12 @@ mod sharing;
 mod sources;
 mod statistics;
 mod tracer;
+mod unbounded;
 mod walk;
 mod work;
 
 pub use ambit_ambient::{Fingerprint, Reuse};
+pub use ambit_ambient::{Spacing, Systems};
 pub use error::Error;
 pub use options::{Ambient, Direct, Limits, Medium, Options, Selection, Specular};
 pub use prepare::{Definition, Environment, Loaded, OctreeSource, load};

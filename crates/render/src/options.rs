@@ -1,5 +1,6 @@
 //! Every parameter of a calculation, complete and typed: what the rendering options of `rpict` and `rtrace` set.
 
+use ambit_ambient::Systems;
 use ambit_base::Rgb;
 
 /// Parameters shared by all programs that trace light.
@@ -72,6 +73,12 @@ pub struct Ambient {
     pub weight: i32,
     /// `-ae`, `-ai`: modifiers left out, or the only ones let in.
     pub selection: Selection,
+    /// `--unbounded-bounces`: after the last bounce paths go on until Russian roulette ends them.
+    pub unbounded: bool,
+    /// `--exact-textures`: without a cache hemispheres stand on the textured normal.
+    pub exact_textures: bool,
+    /// Systems of the cache that Radiance does not have.
+    pub systems: Systems,
 }
 
 /// Which surfaces take part in the ambient calculation, by the name of their immediate modifier.
@@ -131,6 +138,9 @@ impl Options {
                 value: Rgb::ZERO,
                 weight: 0,
                 selection: Selection::All,
+                unbounded: false,
+                exact_textures: false,
+                systems: Systems::default(),
             },
             medium: Medium { extinction: Rgb::ZERO, albedo: Rgb::ZERO, eccentricity: 0.0, sampling: 0.0 },
             limits: Limits { reflections: 7, weight: 1e-4 },
@@ -139,6 +149,16 @@ impl Options {
             uncorrelated: false,
             seed: 0,
         }
+    }
+
+    /// `--unbiased`: every source of bias of the interreflection off, each of which has an option of its own. Without a
+    /// cache there is no interpolation, no spacing, no assumed reflectance and no super-sampling.
+    pub fn unbiased(&mut self) {
+        let a = &mut self.ambient;
+        (a.accuracy, a.super_samples, a.resolution, a.weight) = (0.0, 0, 0, 0);
+        (a.unbounded, a.exact_textures, a.systems.actual_weights) = (true, true, true);
+        self.limits.reflections = 0;
+        self.direct.threshold = 0.0;
     }
 
     /// The defaults of `rtrace`.

@@ -61,6 +61,7 @@ impl Renderer {
             min_weight: options.limits.weight,
             overlap: OVERLAP,
             seed: options.seed,
+            systems: a.systems,
         };
         let cache = Cache::new(params, scene.cube.origin, scene.cube.edge);
         let sources = scene.sources.len();
@@ -216,7 +217,7 @@ impl Walk<'_> {
             }
         }
         let mut answer = Answer::nothing(ray.origin, ray.direction);
-        answer.value = ray.value;
+        answer.value = ray.value + self.endless(0);
         answer.mirrored = ray.mirrored;
         answer.length = ray.effective_length();
         answer.mirrored_length = ray.mirrored_length;

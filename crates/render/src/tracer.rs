@@ -7,7 +7,7 @@ use crate::sources::Tally;
 use crate::walk::Walk;
 use crate::work::Work;
 use ambit_ambient::{Cache, Miss, Query, Sample, SampleRay, Sampler};
-use ambit_base::{DVec3, EPSILON, FAR, Rgb};
+use ambit_base::{DVec3, EPSILON, FAR, Rgb, Stream};
 use ambit_trace::Opacity;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -28,18 +28,38 @@ pub(crate) struct Origin {
     clipped: ClipSet,
     interior: Interior,
     travelled: f64,
+    /// The largest channel of what the answer is multiplied by, at most 1.
+    reflectance: f32,
 }
 
 impl Origin {
     /// The path as it stands at a ray's hit, going on to the near or (`transmitted`) the far side.
-    pub(crate) fn of(ray: &Ray<'_>, transmitted: bool) -> Self {
+    pub(crate) fn of(ray: &Ray<'_>, transmitted: bool, reflectance: f32) -> Self {
         Self {
             level: ray.level,
             transmitted,
+            reflectance,
             clipped: if transmitted { ray.next_clipped } else { ray.clipped },
             interior: ray.interior,
             travelled: ray.travelled + ray.distance,
         }
+    }
+
+    /// True if the path goes on to the far side.
+    pub(crate) fn is_transmitted(&self) -> bool {
+        self.transmitted
+    }
+
+    /// The ray by which the path goes on, for its depth and weight to be set.
+    pub(crate) fn go_on(&self, position: DVec3, direction: DVec3, stream: Stream) -> Ray<'static> {
+        let kind = if self.transmitted { Kinds::AMBIENT_TRANSMITTED } else { Kinds::AMBIENT_REFLECTED };
+        let mut ray = Ray::primary(position, direction, FAR, self.interior, stream);
+        ray.kind = kind;
+        ray.lineage = kind;
+        ray.level = self.level;
+        ray.clipped = self.clipped;
+        ray.travelled = self.travelled;
+        ray
     }
 }
 
@@ -71,24 +91,22 @@ impl Sampler for Tracer<'_> {
         SampleRay { direction, weight, stream }: SampleRay,
         misses: &mut Vec<Miss<Origin>>,
     ) -> Option<Sample> {
-        let from = &query.origin;
-        let kind = if from.transmitted { Kinds::AMBIENT_TRANSMITTED } else { Kinds::AMBIENT_REFLECTED };
-        let mut ray = Ray::primary(query.position, direction, FAR, from.interior, stream);
-        ray.kind = kind;
-        ray.lineage = kind;
-        ray.level = from.level + i32::from(!from.transmitted);
+        let mut ray = query.origin.go_on(query.position, direction, stream);
+        ray.level += i32::from(!query.origin.transmitted);
         ray.depth = query.level + 1;
-        ray.weight = query.weight * weight;
-        ray.clipped = from.clipped;
-        ray.travelled = from.travelled;
+        let actual = self.options.ambient.systems.actual_weights;
+        ray.weight = query.weight * if actual { query.origin.reflectance } else { weight };
         match ray.fate(true, &self.options.limits) {
             Fate::Alive => {}
             // A path that Russian roulette ends brings nothing, and that is its fair share.
             Fate::Unlucky => return Some(Sample { radiance: Rgb::ZERO, distance: FAR }),
             Fate::Refused => return None,
         }
-        Walk { tracer: self, cache, work, misses }.evaluate(&mut ray);
-        Some(Sample { radiance: ray.value * ray.coefficient, distance: ray.effective_length() })
+        let first = misses.len();
+        let mut walk = Walk { tracer: self, cache, work, misses };
+        walk.evaluate(&mut ray);
+        let rest = walk.endless(first);
+        Some(Sample { radiance: ray.value * ray.coefficient + rest, distance: ray.effective_length() })
     }
 
     fn occluded(&self, query: &Query<Origin>, from: DVec3, direction: DVec3) -> bool {

@@ -36,8 +36,8 @@ pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &m
         })
         .collect();
     let brightness: Vec<f32> = cells.iter().map(|c| c.radiance.brightness()).collect();
-    let budget = budget(params.super_samples, weight, plan.side());
-    let counts = allocate(plan.side(), &brightness, budget, |c| plan.share(c));
+    let budget = budget(params.super_samples, weight, plan.grid().side());
+    let counts = allocate([plan.grid().rows(), plan.grid().columns()], &brightness, budget, |c| plan.share(c));
     let mut number = plan.len();
     for (cell, &count) in counts.iter().enumerate() {
         let mut sum = cells[cell].radiance;

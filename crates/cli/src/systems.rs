@@ -1,0 +1,56 @@
+//! Options of interreflection that Radiance does not have, a switch for each system.
+
+use crate::common::Carries;
+use crate::failure::Failure;
+use crate::rendering::Rendering;
+use crate::table::{Place, Row};
+use ambit_render::Spacing;
+
+/// The rows of `--unbiased`, its parts, and the systems of the irradiance cache.
+pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
+    fn light<S: Carries<Rendering>>(s: &mut S) -> &mut Rendering {
+        s.part()
+    }
+    vec![
+        Row::new(
+            "-unbiased",
+            Place::Bare(|s: &mut S| light(s).options.unbiased()),
+            "no bias in interreflection: -aa 0 -as 0 -ar 0 -aw 0 -lr 0 -dt 0 --unbounded-bounces --exact-textures \
+             --actual-weights; options after it count as usual, and -ab must be 1 or more",
+        ),
+        Row::new(
+            "-unbounded-bounces",
+            Place::Bare(|s: &mut S| light(s).options.ambient.unbounded = true),
+            "after the last of -ab bounces go on with single paths until Russian roulette ends them, instead of -av",
+        ),
+        Row::new(
+            "-exact-textures",
+            Place::Bare(|s: &mut S| light(s).options.ambient.exact_textures = true),
+            "with -aa 0: sample about the normal as textures turn it, not about the surface's with a first-order correction",
+        ),
+        Row::new(
+            "-actual-weights",
+            Place::Bare(|s: &mut S| light(s).options.ambient.systems.actual_weights = true),
+            "weigh deeper irradiance values by the actual reflectances, not by half for each bounce: fewer are shared",
+        ),
+        Row::new(
+            "-neighbor-clamping",
+            Place::Bare(|s: &mut S| light(s).options.ambient.systems.neighbour_clamping = true),
+            "let no irradiance value reach farther than a neighbor does, plus the distance between them",
+        ),
+        Row::new(
+            "-spacing",
+            Place::Word(|s: &mut S, how, _| {
+                light(s).options.ambient.systems.spacing = match how.as_str() {
+                    "hessian" => Spacing::Hessian,
+                    "classical" => Spacing::Classical,
+                    _ => return Err(Failure::at("--spacing")),
+                };
+                Ok(())
+            }),
+            "how far irradiance values reach: hessian (the curvature of irradiance, as in Radiance since 2014) or classical \
+             (harmonic mean distance and the gradients of rings and sectors, as before)",
+        )
+        .values("HOW"),
+    ]
+}
