@@ -1,6 +1,6 @@
 //! The table of check cases: reading it, running a case, comparing the answer.
 //!
-//! The layout is described at the head of the table itself, `tests/cases/shading.tsv`.
+//! The layout is described at the head of the tables themselves, `tests/cases/shading.tsv` and `functions.tsv`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -30,6 +30,8 @@ pub struct Case {
     pub values: Vec<Vec<String>>,
     /// Relative tolerance of the numbers among them.
     pub tolerance: f64,
+    /// What rtrace says when it ends, instead of an answer.
+    pub fatal: Option<String>,
 }
 
 /// The whole table.
@@ -85,6 +87,7 @@ impl Table {
                         extra: extra.split_whitespace().filter(|w| *w != "-").map(str::to_owned).collect(),
                         rays: rays.replace(';', "\n") + "\n",
                         values: values.split(';').map(fields).collect(),
+                        fatal: values.strip_prefix("fatal ").map(str::to_owned),
                         tolerance: tolerances.get(&number).copied().unwrap_or(FIVE_DIGITS),
                     });
                 }
@@ -142,6 +145,9 @@ impl Case {
             rtrace = rtrace.arg(word);
         }
         let answer = rtrace.arg(&octree).feed(self.rays.as_bytes());
+        if let Some(message) = &self.fatal {
+            return refused(message, &answer);
+        }
         if answer.status != Some(0) {
             return failed("rtrace", &answer);
         }
@@ -159,6 +165,14 @@ impl Case {
             }
         }
     }
+}
+
+/// A case that must end with a message: whether it did.
+fn refused(message: &str, answer: &Answer) -> Verdict {
+    if answer.status.is_some_and(|s| s != 0) && answer.err.contains(message) {
+        return Verdict::Agrees;
+    }
+    Verdict::Fails(format!("`{message}` expected, ended with {:?}: {}", answer.status, answer.err.trim()))
 }
 
 /// A program ended badly: either it names what it does not support, or it simply fails.

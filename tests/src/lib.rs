@@ -5,11 +5,13 @@
 //!
 //! * [`programs`] finds the programs (built on demand, or the folder that `AMBIT_TOOLS_DIR` names) and runs them.
 //! * [`cases`] reads the table of check cases and compares answers with it.
+//! * [`report`] runs a whole table of them.
 //! * [`fixtures`] finds the bundled scenes and compiles them.
 
 pub mod cases;
 pub mod fixtures;
 pub mod programs;
+pub mod report;
 
 pub use cases::{Case, Table};
 pub use fixtures::Fixture;

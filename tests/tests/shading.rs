@@ -1,49 +1,9 @@
 //! The check cases of `tests/cases/shading.tsv` over the finished programs oconv and rtrace.
 //!
-//! Prints every case that does not agree and the counts. Passes if all cases agree except those that the table lists
-//! as not supported yet (which must be refused with a message that says so) or as different on purpose. A listed case
-//! that agrees is an error, too: the lists may only shrink. Numbers as arguments run these cases only.
+//! Numbers as arguments run these cases only; [`ambit_tests::report`] says what passes.
 
-use std::path::Path;
 use std::process::ExitCode;
 
-use ambit_tests::cases::{Table, Verdict};
-use ambit_tests::programs;
-
 fn main() -> ExitCode {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
-    let table = Table::read(&std::fs::read_to_string(folder.join("shading.tsv")).expect("the table is checked in"));
-    let wanted: Vec<u32> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();
-    let files = folder.join("files");
-    let (mut agree, mut refused, mut different, mut wrong) = (0, 0, 0, 0);
-    for case in table.cases.iter().filter(|c| wanted.is_empty() || wanted.contains(&c.number)) {
-        let scratch = tempfile::tempdir().expect("a scratch folder can be made");
-        let verdict = case.run(&table.options, &files, scratch.path());
-        // Foreign programs support everything: the lists speak of our own only.
-        let unsupported = table.unsupported.contains(&case.number) && !programs::foreign();
-        let differs = table.different.contains(&case.number) && !programs::foreign();
-        let problem = match (&verdict, unsupported, differs) {
-            (Verdict::Agrees, false, false) => {
-                agree += 1;
-                continue;
-            }
-            (Verdict::Refused(_), true, false) => {
-                refused += 1;
-                continue;
-            }
-            (Verdict::Fails(_), false, true) => {
-                different += 1;
-                continue;
-            }
-            (Verdict::Agrees, ..) => "agrees now: take it off the table's lists".to_owned(),
-            (Verdict::Refused(message), ..) => format!("refused, but not listed as unsupported: {message}"),
-            (Verdict::Fails(what), ..) => what.clone(),
-        };
-        wrong += 1;
-        println!("[{}] {}: {problem}", case.number, case.checks);
-    }
-    println!(
-        "shading cases: {agree} agree, {refused} not supported yet, {different} different on purpose, {wrong} wrong"
-    );
-    if wrong == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    ambit_tests::report::run("shading")
 }

@@ -11,10 +11,18 @@ use ambit_base::{DVec3, EPSILON, Rgb};
 const HEMISPHERE: u64 = 0xa0;
 
 impl Walk<'_> {
+    /// As [`Walk::ambient`], for materials that take a coefficient without a positive channel as none.
+    pub(crate) fn positive_ambient(&mut self, ray: &mut Ray<'_>, coefficient: Rgb, shading: DVec3) {
+        if coefficient.max_element() > EPSILON as f32 {
+            self.ambient(ray, coefficient, shading);
+        }
+    }
+
     /// Adds `coefficient` × (irradiance/π) on the side of the surface that `shading` points to. `shading` is the
     /// textured normal, or its negative for the far side.
     pub(crate) fn ambient(&mut self, ray: &mut Ray<'_>, coefficient: Rgb, shading: DVec3) {
-        if coefficient.max_element() <= EPSILON as f32 {
+        // A negative pattern takes light away here, though not from the light of sources.
+        if coefficient.abs().max_element() <= EPSILON as f32 {
             return;
         }
         let facing = ray.facing_normal();

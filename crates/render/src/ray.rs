@@ -213,7 +213,7 @@ impl<'p> Ray<'p> {
     }
 
     /// The part of the weight that a medium takes on this ray's segment.
-    fn extinction_factor(&self) -> f32 {
+    pub(crate) fn extinction_factor(&self) -> f32 {
         let least = self.interior.extinction.min_element();
         if least <= 0.0 {
             return 1.0;

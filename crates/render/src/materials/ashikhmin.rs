@@ -122,7 +122,7 @@ impl Walk<'_> {
             self.sample_ashikhmin(ray, &facing, &lobe);
         }
         if diffuse.max_element() > EPSILON as f32 {
-            self.ambient(ray, if lump { diffuse + specular } else { diffuse }, facing.normal);
+            self.positive_ambient(ray, if lump { diffuse + specular } else { diffuse }, facing.normal);
         }
         let d = ray.direction;
         self.direct(ray, |l, omega| lobe.coefficient(d, l, omega));

@@ -103,8 +103,8 @@ impl Walk<'_> {
         }
         let near = if ray.cosine() > 0.0 { m.front } else { m.back } * finish.pattern;
         let far = m.transmitted * finish.pattern;
-        self.ambient(ray, near, facing.normal);
-        self.ambient(ray, far, -facing.normal);
+        self.positive_ambient(ray, near, facing.normal);
+        self.positive_ambient(ray, far, -facing.normal);
         if !m.lit {
             return true;
         }

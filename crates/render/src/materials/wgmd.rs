@@ -171,8 +171,8 @@ impl Walk<'_> {
         } else {
             (Rgb::ZERO, facing.normal)
         };
-        self.ambient(ray, near + lumped_near, facing.normal);
-        self.ambient(ray, far + lumped_far, -far_normal);
+        self.positive_ambient(ray, near + lumped_near, facing.normal);
+        self.positive_ambient(ray, far + lumped_far, -far_normal);
 
         let rough = |lobe: Option<Lobe>| lobe.and_then(|l| Some((l.facets?, l.facing, l.colour)));
         let (reflection, transmission) = (rough(reflection), rough(transmission));

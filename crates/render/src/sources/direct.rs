@@ -54,8 +54,9 @@ impl Walk<'_> {
         candidates.clear();
         let scene = self.tracer.scene;
         let options = self.tracer.options;
+        // The weight that counts is a shadow ray's.
         let ratio = if options.direct.sampling > EPSILON {
-            options.direct.sampling / f64::from(ray.weight)
+            options.direct.sampling / f64::from(ray.weight * ray.extinction_factor())
         } else {
             f64::INFINITY
         };

@@ -119,10 +119,10 @@ impl Walk<'_> {
         let lumped = self.sample_bsdf(ray, &lit, Sampling { transmitted: true, geometric, origin: beyond });
         let far = lit.far + finish.pattern * lumped;
         let normal = facing.normal * side;
-        self.ambient(ray, near, normal);
+        self.positive_ambient(ray, near, normal);
         // On this side of the surface: so Radiance has it, though what is behind would be meant.
         ray.point = here + geometric * thickness;
-        self.ambient(ray, far, -normal);
+        self.positive_ambient(ray, far, -normal);
         ray.point = here;
         let views = (VIEWS * ss * f64::from(ray.weight) + 0.5).floor().clamp(1.0, MOST_VIEWS) as u32;
         let key = ray.stream.child(mix(DIRECT, u64::from(ray.material)));

@@ -59,12 +59,14 @@ struct Probe {
     excess: Rgb,
     /// Brightness with the Lambertian part, 1/sr.
     value: f32,
+    /// True if averages find no light here.
+    dark: bool,
 }
 
 impl Probe {
     /// True for the same cell, and for cells without any light, which are taken together.
     fn same(&self, other: &Self) -> bool {
-        self.cell.index == other.cell.index || (self.value <= 0.0 && other.value <= 0.0)
+        self.cell.index == other.cell.index || (self.dark && other.dark)
     }
 }
 
@@ -86,7 +88,9 @@ impl Through {
             let direction = DVec3::new(x, y, -z2.sqrt().copysign(view.z));
             let Some(cell) = lobe.cell(view, direction) else { continue };
             let excess = lobe.excess(&cell, view, direction, base);
-            let probe = Probe { cell, excess, value: (excess + base).brightness() };
+            // What tells peak from surround is the whole value, also of cells that averages take as empty.
+            let value = (lobe.colour(&cell, view, direction).rgb() + base).brightness();
+            let probe = Probe { cell, excess, value, dark: (excess + base).brightness() <= 0.0 };
             if found[..count].iter().flatten().any(|p| p.same(&probe)) {
                 continue;
             }
@@ -99,7 +103,7 @@ impl Through {
         let (mut members, mut values, mut area, mut colour) = (0u8, 0.0, 0.0, Rgb::ZERO);
         let (mut surround_area, mut surround) = (0.0, Rgb::ZERO);
         let mut inside = true;
-        for Probe { cell, excess, value } in found.iter().flatten() {
+        for Probe { cell, excess, value, .. } in found.iter().flatten() {
             inside &= cell.area <= WIDEST * least_area && value * f32::from(members) * STEEPNESS >= values;
             let light = *excess * cell.area as f32;
             if inside {
