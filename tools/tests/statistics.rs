@@ -40,7 +40,7 @@ fn a_run_says_what_it_took() {
     fs::write(folder.path().join("s.rad"), SCENE).unwrap();
     let octree = run(&folder, env!("CARGO_BIN_EXE_oconv"), "s.rad", "");
     fs::write(folder.path().join("s.oct"), octree.stdout).unwrap();
-    let rays = (0..2000).map(|i| format!("{} 1.2 0 0 0 1\n", 0.002 * f64::from(i))).collect::<Vec<_>>().concat();
+    let rays = (0..8000).map(|i| format!("{} 1.2 0 0 0 1\n", 0.0005 * f64::from(i))).collect::<Vec<_>>().concat();
     let rtrace =
         |more: &str| run(&folder, env!("CARGO_BIN_EXE_rtrace"), &format!("-h -I -u- {LIGHT} {more} s.oct"), &rays);
     let forget = || fs::remove_file(folder.path().join("a.amb")).unwrap();
