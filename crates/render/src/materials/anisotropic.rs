@@ -54,11 +54,7 @@ impl Walk<'_> {
         if ray.is_shadow() {
             return true;
         }
-        if ray.cosine() < 0.0 && !self.tracer.options.back_visible {
-            return false;
-        }
-        let facing = Facing::of(ray, finish.tilt, true);
-        ray.normal = facing.normal;
+        let Some(facing) = self.visible_side(ray, finish.tilt) else { return false };
         let colour = m.colour * finish.pattern;
         let channels = self.material_channels(ray, &m.axis, &facing, colour);
         let u = self.axis(&channels, &m.axis, 0);

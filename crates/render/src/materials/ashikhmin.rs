@@ -96,11 +96,7 @@ impl Walk<'_> {
         if ray.is_shadow() {
             return true;
         }
-        if ray.cosine() < 0.0 && !self.tracer.options.back_visible {
-            return false;
-        }
-        let facing = Facing::of(ray, finish.tilt, true);
-        ray.normal = facing.normal;
+        let Some(facing) = self.visible_side(ray, finish.tilt) else { return false };
         let diffuse = m.diffuse * finish.pattern;
         let cosine = facing.cosine.max(LEAST_COSINE);
         let channels = self.material_channels(ray, &m.axis, &facing, diffuse);

@@ -1,10 +1,10 @@
 //! `BRTDfunc`: ideal reflection and transmission by expressions, diffuse parts of their own for either side, and three
 //! functions, one a channel, of the direction to the light.
 
-use super::{Facing, Finish, mirror_direction};
+use super::{Facing, Finish};
 use crate::Error;
 use crate::patterns::{Compiler, Functions, Recipe};
-use crate::ray::{Kinds, Ray};
+use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{Colour, EPSILON, Rgb};
 use ambit_scene::{ObjectId, Scene};
@@ -74,32 +74,13 @@ impl Walk<'_> {
         let straight = !facing.textured || ray.is_shadow() || ray.is_ambient();
         if m.transmits && through.max_element() > EPSILON as f32 {
             let direction = self.through_direction(ray, &facing);
-            if let Some(mut child) = self.child(ray, Kinds::TRANSFERRED, direction, through, 3) {
-                self.evaluate(&mut child);
-                let light = child.coefficient * child.value;
-                let beyond = child.effective_length();
-                ray.value += light;
-                if straight {
-                    ray.unmirrored_length = ray.distance + beyond;
-                }
-            }
+            self.pass(ray, direction, through, straight);
         }
         if ray.is_shadow() {
             return true;
         }
-        if mirror.max_element() > EPSILON as f32
-            && let Some(mut child) =
-                self.child(ray, Kinds::REFLECTED, mirror_direction(ray.direction, &facing), mirror, 2)
-        {
-            self.evaluate(&mut child);
-            let light = child.coefficient * child.value;
-            let beyond = child.effective_length();
-            ray.value += light;
-            ray.mirrored = light;
-            ray.mirrored_length = ray.distance;
-            if self.is_flat(ray) && (!facing.textured || ray.is_ambient()) {
-                ray.mirrored_length += beyond;
-            }
+        if mirror.max_element() > EPSILON as f32 {
+            self.reflect(ray, &facing, mirror, straight);
         }
         let near = if ray.cosine() > 0.0 { m.front } else { m.back } * finish.pattern;
         let far = m.transmitted * finish.pattern;

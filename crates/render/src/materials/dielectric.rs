@@ -84,21 +84,8 @@ impl Walk<'_> {
         if ray.is_shadow() || reflected <= EPSILON {
             return true;
         }
-        let mut direction = d + facing.normal * (2.0 * c);
-        if facing.textured && direction.dot(facing.geometric) <= EPSILON {
-            direction = d - facing.geometric * (2.0 * d.dot(facing.geometric));
-        }
-        if let Some(mut child) = self.child(ray, Kinds::REFLECTED, direction, Rgb::splat(reflected as f32), 2) {
-            self.evaluate(&mut child);
-            let light = child.coefficient * child.value;
-            let length = child.effective_length();
-            ray.value += light;
-            ray.mirrored = light;
-            ray.mirrored_length = ray.distance;
-            if self.is_flat(ray) && (!facing.textured || ray.is_ambient()) {
-                ray.mirrored_length += length;
-            }
-        }
+        let straight = !facing.textured || ray.is_ambient();
+        self.reflect(ray, &facing, Rgb::splat(reflected as f32), straight);
         true
     }
 }

@@ -2,7 +2,7 @@
 //! of measured data. It counts for direct light only; opaque to shadow rays.
 
 use super::program::put;
-use super::{Facing, Finish, NormalKind};
+use super::{Finish, NormalKind};
 use crate::Error;
 use crate::patterns::{Compiler, Functions, Recipe};
 use crate::ray::Ray;
@@ -74,11 +74,7 @@ impl Walk<'_> {
         if ray.is_shadow() {
             return true;
         }
-        if ray.cosine() < 0.0 && !self.tracer.options.back_visible {
-            return false;
-        }
-        let facing = Facing::of(ray, finish.tilt, true);
-        ray.normal = facing.normal;
+        let Some(facing) = self.visible_side(ray, finish.tilt) else { return false };
         let colour = m.colour * finish.pattern;
         let through = m.transmission * (1.0 - m.specular);
         let through_specular = m.transmitted_specular * through;

@@ -1,7 +1,7 @@
 //! glass: a thin pane with all internal reflections summed.
 
-use super::{Facing, Finish, mirror_direction};
-use crate::ray::{Kinds, Ray};
+use super::{Facing, Finish};
+use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{DVec3, EPSILON, Rgb};
 
@@ -56,30 +56,12 @@ impl Walk<'_> {
         let straight = !facing.textured || ray.is_shadow() || ray.is_ambient();
         if m.transmissivity.max_element() >= LEAST {
             let direction = if straight || self.is_phong(ray) { ray.direction } else { refracted(ray, m, &facing) };
-            if let Some(mut child) = self.child(ray, Kinds::TRANSFERRED, direction, t * finish.pattern, 3) {
-                self.evaluate(&mut child);
-                let light = child.coefficient * child.value;
-                let beyond = child.effective_length();
-                ray.value += light;
-                if straight {
-                    ray.unmirrored_length = ray.distance + beyond;
-                }
-            }
+            self.pass(ray, direction, t * finish.pattern, straight);
         }
         if ray.is_shadow() {
             return true;
         }
-        if let Some(mut child) = self.child(ray, Kinds::REFLECTED, mirror_direction(ray.direction, &facing), r, 2) {
-            self.evaluate(&mut child);
-            let light = child.coefficient * child.value;
-            let beyond = child.effective_length();
-            ray.value += light;
-            ray.mirrored = light;
-            ray.mirrored_length = ray.distance;
-            if self.is_flat(ray) && (!facing.textured || ray.is_ambient()) {
-                ray.mirrored_length += beyond;
-            }
-        }
+        self.reflect(ray, &facing, r, straight);
         true
     }
 }

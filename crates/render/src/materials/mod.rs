@@ -7,6 +7,7 @@ mod bsdf;
 mod dielectric;
 mod function;
 mod glass;
+mod ideal;
 mod light;
 mod mirror;
 mod mist;

@@ -2,7 +2,7 @@
 //! surface. Also the Lambertian stand-in that measures irradiance.
 
 use super::rough::Facets;
-use super::{Facing, Finish, mirror_direction};
+use super::{Facing, Finish};
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
 use ambit_base::{DVec3, EPSILON, Rgb};
@@ -98,11 +98,7 @@ impl Walk<'_> {
         if ray.is_shadow() && m.kind != NormalKind::Trans {
             return true;
         }
-        if ray.cosine() < 0.0 && !self.tracer.options.back_visible {
-            return false;
-        }
-        let facing = Facing::of(ray, finish.tilt, true);
-        ray.normal = facing.normal;
+        let Some(facing) = self.visible_side(ray, finish.tilt) else { return false };
         let colour = m.colour * finish.pattern;
         let cosine = facing.cosine.max(LEAST_COSINE);
         let split = m.split(colour, cosine);
@@ -116,18 +112,8 @@ impl Walk<'_> {
             return true;
         }
         if split.smooth && split.reflected > EPSILON {
-            let direction = mirror_direction(ray.direction, &facing);
-            if let Some(mut child) = self.child(ray, Kinds::REFLECTED, direction, split.mirror, 2) {
-                self.evaluate(&mut child);
-                let light = child.coefficient * child.value;
-                let beyond = child.effective_length();
-                ray.value += light;
-                ray.mirrored = light;
-                ray.mirrored_length = ray.distance;
-                if flat && ray.is_ambient() {
-                    ray.mirrored_length += beyond;
-                }
-            }
+            let straight = !facing.textured && ray.is_ambient();
+            self.reflect(ray, &facing, split.mirror, straight);
         }
         if split.smooth && split.diffuse <= EPSILON && split.through_diffuse <= EPSILON {
             return true;

@@ -3,10 +3,10 @@
 
 use super::normal::{FRESNEL_FROM, crossing, fresnel};
 use super::rough::Facets;
-use super::{Facing, Finish, mirror_direction};
+use super::{Facing, Finish};
 use crate::Error;
 use crate::patterns::{Compiler, Functions};
-use crate::ray::{Kinds, Ray};
+use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{Colour, DVec3, EPSILON, Rgb};
 use ambit_scene::{ObjectId, Scene};
@@ -94,11 +94,7 @@ impl Walk<'_> {
         if ray.is_shadow() && !m.transmits {
             return true;
         }
-        if ray.cosine() < 0.0 && !self.tracer.options.back_visible {
-            return false;
-        }
-        let facing = Facing::of(ray, finish.tilt, true);
-        ray.normal = facing.normal;
+        let Some(facing) = self.visible_side(ray, finish.tilt) else { return false };
         let mut reflection = self.wgmd_lobe(ray, m, REFLECTION, m.reflection, finish, bare);
         let mut transmission = self.wgmd_lobe(ray, m, TRANSMISSION, m.transmission, finish, bare);
         // What an ideal reflection takes from the other parts, at the angle of the view and of the light.
@@ -117,15 +113,8 @@ impl Walk<'_> {
         }
         if let Some(Lobe { colour, facing, facets: None }) = &transmission {
             let direction = self.wgmd_through(ray, facing);
-            if let Some(mut child) = self.child(ray, Kinds::TRANSFERRED, direction, *colour, 3) {
-                self.evaluate(&mut child);
-                let light = child.coefficient * child.value;
-                let beyond = child.effective_length();
-                ray.value += light;
-                if !facing.textured || ray.is_shadow() || ray.is_ambient() {
-                    ray.unmirrored_length = ray.distance + beyond;
-                }
-            }
+            let straight = !facing.textured || ray.is_shadow() || ray.is_ambient();
+            self.pass(ray, direction, *colour, straight);
         }
         if ray.is_shadow() {
             return true;
@@ -134,18 +123,8 @@ impl Walk<'_> {
         let (mut lumped_near, mut lumped_far) = (Rgb::ZERO, Rgb::ZERO);
         match &reflection {
             Some(Lobe { colour, facing, facets: None }) => {
-                let direction = mirror_direction(ray.direction, facing);
-                if let Some(mut child) = self.child(ray, Kinds::REFLECTED, direction, *colour, 2) {
-                    self.evaluate(&mut child);
-                    let light = child.coefficient * child.value;
-                    let beyond = child.effective_length();
-                    ray.value += light;
-                    ray.mirrored = light;
-                    ray.mirrored_length = ray.distance;
-                    if self.is_flat(ray) && !facing.textured && ray.is_ambient() {
-                        ray.mirrored_length += beyond;
-                    }
-                }
+                let straight = !facing.textured && ray.is_ambient();
+                self.reflect(ray, facing, *colour, straight);
             }
             Some(Lobe { colour, facing, facets: Some(facets) }) => {
                 if threshold >= f64::from(colour.brightness()) - EPSILON {

@@ -155,12 +155,7 @@ impl Walk<'_> {
     fn see_through(&mut self, ray: &mut Ray<'_>, through: Option<&Through>, pattern: Rgb) {
         let Some(through) = through else { return };
         let k = through.colour * pattern;
-        let Some(mut child) = self.child(ray, Kinds::TRANSFERRED, ray.direction, k, 3) else { return };
-        self.evaluate(&mut child);
-        let light = child.coefficient * child.value;
-        let beyond = child.effective_length();
-        ray.value += light;
-        ray.unmirrored_length = ray.distance + beyond;
+        self.pass(ray, ray.direction, k, true);
     }
 }
 
