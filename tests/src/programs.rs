@@ -41,8 +41,8 @@ fn build() -> PathBuf {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(root()).args(["build", "--quiet", "--locked", "-p", "ambit-tools", "--bins"]);
     cargo.arg("--target-dir").arg(profile.parent().expect("a profile lies in the target folder"));
-    if profile.ends_with("release") {
-        cargo.arg("--release");
+    if !profile.ends_with("debug") {
+        cargo.arg("--profile").arg(profile.file_name().expect("a profile's folder has its name"));
     }
     let status = cargo.status().expect("cargo can be started");
     assert!(status.success(), "building the programs failed");

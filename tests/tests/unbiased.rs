@@ -146,3 +146,21 @@ fn textured_normals_are_exact() {
     let first_order = run("-aa 0 -ab 1 -ad 1024 -as 0");
     assert!((first_order - want).abs() > 0.05 * want, "the first order gives {first_order} as well");
 }
+
+#[test]
+fn surfaces_that_send_out_more_than_they_get_are_told_of() {
+    if foreign() {
+        return;
+    }
+    // The pattern makes three times as much of what passes the wall, which the outer wall sends back.
+    let scene = "void brightfunc three 2 3 . 0 0 three trans t 0 0 7 1 1 1 0 0 .5 0 t bubble inner 0 0 4 0 0 0 2\n\
+                 void plastic w 0 0 5 .9 .9 .9 0 0 w bubble outer 0 0 4 0 0 0 3\n\
+                 void glow g 0 0 4 1 1 1 0 g sphere lamp 0 0 4 0 0 0 .1\n";
+    let scratch = tempfile::tempdir().expect("a scratch folder can be made");
+    let octree = scratch.path().join("scene.oct");
+    std::fs::write(&octree, Program::new("oconv").arg("-").feed(scene.as_bytes()).well("oconv").out)
+        .expect("the scratch folder can be written");
+    let answer = Program::new("rtrace").line("-h -w- -ab 2 --unbounded-bounces").arg(&octree).feed(b"0 0 .5 1 0 0\n");
+    assert_eq!(answer.status, Some(1), "{}", answer.err);
+    assert!(answer.err.contains("more than they receive"), "{}", answer.err);
+}

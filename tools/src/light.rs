@@ -1,6 +1,7 @@
 //! Between the programs and the renderer: loading, the ambient file, and answers to batches of rays.
 
 use crate::session::{Session, Stop};
+use ambit_base::EPSILON;
 use ambit_cli::{Class, Failure, Function, Rendering};
 use ambit_file::{Header, general};
 use ambit_render::picture::SourceOutline;
@@ -49,7 +50,7 @@ impl<'a> Scene<'a> {
         let loaded = load(source, &environment).map_err(failed)?;
         let header = loaded.header().clone();
         let ambient = rendering.ambient_file.as_ref().zip(rendering.reuse).filter(|_| !casting);
-        let caching = rendering.options.ambient.accuracy > 0.0;
+        let caching = rendering.options.ambient.accuracy > EPSILON;
         let fingerprint = (ambient.is_some() && caching).then(|| loaded.fingerprint(&rendering.options, &environment));
         let mut renderer = Renderer::new(loaded, rendering.options.clone(), &environment).map_err(failed)?;
         if let Some((file, reuse)) = ambient {

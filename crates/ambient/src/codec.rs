@@ -5,6 +5,7 @@ use crate::record::Record;
 use ambit_base::{DVec3, Rgb};
 use ambit_file::{FLOAT_BYTES, decode_direction, decode_float, decode_pixel};
 use ambit_file::{encode_direction, encode_float, encode_pixel};
+use std::ops::Range;
 
 /// The length of a record of three channels.
 pub const RECORD_BYTES: usize = 67;
@@ -19,6 +20,8 @@ pub enum Layout {
 }
 
 impl Layout {
+    /// Where the codes of normal and tangent stand.
+    pub const DIRECTIONS: Range<usize> = 21..29;
     /// What is written.
     pub const CURRENT: Self = Self::V561;
 

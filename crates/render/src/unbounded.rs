@@ -5,6 +5,7 @@
 //!
 //! Paths are followed one after the other, not one inside the other: their length is not limited by the stack.
 
+use crate::Error;
 use crate::ray::Ray;
 use crate::tracer::Origin;
 use crate::walk::Walk;
@@ -13,6 +14,11 @@ use ambit_base::{Frame, Rgb, Stream, hash_bits, hash_point, square_to_disk};
 
 /// Largest probability of going on: between perfectly white walls paths end, too, after ten thousand bounces on average.
 const LIKELIEST: f32 = 0.9999;
+/// Followed so far, the paths of one sample do not end: surfaces send out more than they get. Between perfectly white walls
+/// so many bounces come to pass once in e¹⁰⁰ samples.
+const MOST: usize = 1_000_000;
+/// So many paths at once are only where each becomes several.
+const CROWD: usize = 10_000;
 /// Tag of the number that decides; the far side's is the next.
 const SURVIVAL: u64 = 0xe0;
 
@@ -25,7 +31,8 @@ impl Walk<'_> {
 
     /// Russian roulette at a diffuse surface behind the last bounce; what survives waits among the misses.
     pub(crate) fn survive(&mut self, ray: &Ray<'_>, coefficient: Rgb, query: Query<Origin>) {
-        let chance = coefficient.max_element().min(LIKELIEST);
+        // A negative pattern takes light away.
+        let chance = coefficient.abs().max_element().min(LIKELIEST);
         let side = u64::from(query.origin.is_transmitted());
         if ray.stream.child(SURVIVAL + side).one() < f64::from(chance) {
             let coefficient = ray.throughput * ray.attenuation() * coefficient / chance;
@@ -42,12 +49,26 @@ impl Walk<'_> {
         let end = self.tracer.options.ambient.bounces.min(255);
         let mut sum = Rgb::ZERO;
         let mut at = first;
+        let mut followed = 0;
         while at < self.misses.len() {
             if i32::from(self.misses[at].query.level) < end {
                 at += 1;
                 continue;
             }
             let Miss { coefficient, query } = self.misses.swap_remove(at);
+            followed += 1;
+            if self.tracer.scene.fault.is_set() {
+                // The calculation ends anyway.
+                self.misses.truncate(first);
+                return Rgb::ZERO;
+            }
+            if followed > MOST || self.misses.len() - first > CROWD || !coefficient.is_finite() {
+                self.fail(Error::user(
+                    "bounces without end bring endless light: surfaces reflect more than they receive",
+                ));
+                self.misses.truncate(first);
+                return Rgb::ZERO;
+            }
             let stream = Stream::new(
                 0,
                 hash_bits(&[hash_point(query.position), hash_point(query.shading), self.tracer.options.seed, SURVIVAL]),

@@ -8,7 +8,8 @@ use super::share::{AmbientFile, Locks, Spare, cut, io_error, lock, read_from, sk
 use crate::codec::Layout;
 use crate::record::Record;
 use ambit_base::Notify;
-use ambit_file::{Header, LockMode, os_text};
+use ambit_file::{FileLock, Header, LockMode, os_text};
+use std::cell::Cell;
 use std::fs::File;
 use std::io::{ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -43,6 +44,8 @@ struct Entry<'a> {
     notify: &'a dyn Notify,
     /// The file beside one of another scene: should it not fit either, there is no further one.
     beside: bool,
+    /// A lock was not granted: an abandoned request may still stand, and no further one is made.
+    lockless: Cell<bool>,
 }
 
 impl AmbientFile {
@@ -52,7 +55,7 @@ impl AmbientFile {
     /// incomplete ones at the end (which are cut off) and missing locks.
     pub fn open(path: &Path, opening: &Opening<'_>, notify: &dyn Notify) -> Result<Opened, FileError> {
         let name = path.to_string_lossy().into_owned();
-        Entry { path, name, opening, notify, beside: false }.open()
+        Entry { path, name, opening, notify, beside: false, lockless: Cell::new(false) }.open()
     }
 }
 
@@ -127,7 +130,7 @@ impl Entry<'_> {
 
     /// Writes the header of a file that is empty.
     fn begin(&self, file: Arc<File>) -> Result<Opened, FileError> {
-        let lock = lock(&file, LockMode::Exclusive, self.opening.patience, &self.name, self.notify)?;
+        let lock = self.lock(&file, LockMode::Exclusive)?;
         if file.metadata().map_err(io_error("read", &self.name))?.len() > 0 {
             drop(lock);
             return self.open();
@@ -144,7 +147,7 @@ impl Entry<'_> {
     /// A file that has but a header, just written.
     fn new_file(&self, file: Arc<File>) -> Result<Opened, FileError> {
         // Without locks this process, having created the file, writes to it, and the others beside it.
-        let lock = lock(&file, LockMode::Shared, self.opening.patience, &self.name, self.notify)?;
+        let lock = self.lock(&file, LockMode::Shared)?;
         let locks = if lock.is_some() { Locks::Within(self.opening.patience) } else { Locks::Alone };
         drop(lock);
         let head = self.head(None);
@@ -153,6 +156,16 @@ impl Entry<'_> {
         let layout = Layout::CURRENT;
         let file = AmbientFile { file, name, layout, start, end: start, locks, waiting: Vec::new(), spare };
         Ok(Opened { records: Vec::new(), file: Some(file) })
+    }
+
+    /// Locks a file of this entry; `None` if there are no locks to be had.
+    fn lock<'f>(&self, file: &'f Arc<File>, mode: LockMode) -> Result<Option<FileLock<'f>>, FileError> {
+        if self.lockless.get() {
+            return Ok(None);
+        }
+        let lock = lock(file, mode, self.opening.patience, &self.name, self.notify)?;
+        self.lockless.set(lock.is_none());
+        Ok(lock)
     }
 
     fn spare(&self, head: Vec<u8>) -> Spare {
@@ -182,7 +195,7 @@ impl Entry<'_> {
         let name = &self.name;
         let mut mode = LockMode::Shared;
         loop {
-            let lock = lock(file, mode, self.opening.patience, name, self.notify)?;
+            let lock = self.lock(file, mode)?;
             let bytes = read_from(file, 0).map_err(io_error("read", name))?;
             if bytes.is_empty() {
                 return Ok(None);
@@ -200,7 +213,9 @@ impl Entry<'_> {
                 if contents.torn > 0 && lock.is_some() {
                     file.set_len(end).map_err(io_error("repair", name))?;
                 }
-                end = self.merge(&mut contents, lock.is_some().then_some(&**file), end);
+                // Segments that came up meanwhile wait for one who may write.
+                let alone = lock.is_some() && mode == LockMode::Exclusive;
+                end = self.merge(&mut contents, alone.then_some(&**file), end);
             }
             return Ok(Some(Existing { contents, verdict, end, locked: lock.is_some() }));
         }
@@ -265,7 +280,14 @@ impl Entry<'_> {
             return Opened::NOTHING;
         }
         self.notify.warn(&format!("{unused}, \"{name}\" is used instead"));
-        let entry = Entry { path: &path, name, opening: self.opening, notify: self.notify, beside: true };
+        let entry = Entry {
+            path: &path,
+            name,
+            opening: self.opening,
+            notify: self.notify,
+            beside: true,
+            lockless: Cell::new(false),
+        };
         entry.open().unwrap_or_else(|e| {
             self.notify.warn(&format!("{e}; values are not kept"));
             Opened::NOTHING
@@ -274,7 +296,7 @@ impl Entry<'_> {
 
     /// Reads a file that cannot be written, or is not to be.
     fn read_only(&self, file: &Arc<File>) -> Result<Opened, FileError> {
-        let lock = lock(file, LockMode::Shared, self.opening.patience, &self.name, self.notify)?;
+        let lock = self.lock(file, LockMode::Shared)?;
         let bytes = read_from(file, 0).map_err(io_error("read", &self.name))?;
         drop(lock);
         let mut contents = self.understood(&bytes)?;
@@ -331,6 +353,7 @@ impl AmbientFile {
         notify: &dyn Notify,
     ) -> Result<Opened, FileError> {
         let name = "a.amb".to_owned();
-        Entry { path: Path::new("a.amb"), name, opening, notify, beside: false }.read_only(file)
+        Entry { path: Path::new("a.amb"), name, opening, notify, beside: false, lockless: Cell::new(false) }
+            .read_only(file)
     }
 }

@@ -4,26 +4,25 @@
 //! other, whole records follow that begin at other places: behind damage the next place is looked for from which several
 //! records in a row make sense.
 
-use crate::store::{Failure, Output, Told, bytes, file, tell};
+use crate::store::{Failure, Output, PATIENCE, Told, bytes, file, tell};
 use ambit_ambient::{Layout, RECORD_BYTES, Record, missing, remove_done, scan, scan_header, segments};
 use ambit_file::{FileLock, LockMode, os_text};
 use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
 /// So many records in a row are no accident.
 const RUN: usize = 2;
-/// How long the lock is waited for.
-const PATIENCE: Duration = Duration::from_secs(10);
-
 /// What stands in the records' part of a file.
 #[derive(Debug, Default, PartialEq)]
 struct Found {
     records: Vec<Record>,
+    /// Their bytes as they stand, one after the other.
+    kept: Vec<u8>,
     /// Records that do not begin at a multiple of their length.
     displaced: usize,
     /// Records that another is equal to.
@@ -40,19 +39,21 @@ impl Found {
         let mut known = HashSet::new();
         let (mut at, mut end) = (0, 0);
         let record = |at: usize| {
-            let bytes = bytes.get(at..at + RECORD_BYTES)?.try_into().ok()?;
-            Some(layout.decode(bytes)).filter(|r| r.is_plausible() && layout.encode(r) == *bytes)
+            let bytes: &[u8; RECORD_BYTES] = bytes.get(at..at + RECORD_BYTES)?.try_into().ok()?;
+            let record = layout.decode(bytes);
+            (record.is_plausible() && is_written(&layout.encode(&record), bytes)).then_some((record, *bytes))
         };
         while at + RECORD_BYTES <= bytes.len() {
             // In step with the one before a single record is believed.
             let in_step = at == end || at % RECORD_BYTES == 0;
             let run = if in_step { 1 } else { RUN.min((bytes.len() - at) / RECORD_BYTES) };
             match record(at).filter(|_| (1..run).all(|k| record(at + k * RECORD_BYTES).is_some())) {
-                Some(r) => {
+                Some((r, own)) => {
                     found.damaged += at - end;
                     found.displaced += usize::from(at % RECORD_BYTES != 0);
-                    if known.insert(layout.encode(&r)) {
+                    if known.insert(own) {
                         found.records.push(r);
+                        found.kept.extend(own);
                     } else {
                         found.repeated += 1;
                     }
@@ -69,6 +70,13 @@ impl Found {
     fn sound(&self) -> bool {
         self.displaced == 0 && self.damaged == 0 && self.torn == 0
     }
+}
+
+/// True if a record whose bytes are `own` would be written as `again`, but for its directions: several codes mean
+/// nearly the same (a component stored as zero has lost its sign, two may tie for the largest).
+fn is_written(again: &[u8; RECORD_BYTES], own: &[u8; RECORD_BYTES]) -> bool {
+    let Range { start, end } = Layout::DIRECTIONS;
+    again[..start] == own[..start] && again[end..] == own[end..]
 }
 
 /// Tells of every file whether it is sound.
@@ -123,18 +131,18 @@ pub(crate) fn repair(path: &Path, output: &Output) -> Result<(), Failure> {
     let found = Found::of(&bytes[start..], layout);
     contents.records = found.records;
     let parts = segments(path, &contents, &Told);
-    let (more, _) = missing(&contents, &parts);
-    contents.records.extend(more);
-    let repaired = file(&header, layout, &contents.records);
-    tell(&format!("{name}: {} records kept, {} bytes dropped", contents.records.len(), found.damaged + found.torn));
+    let (_, more) = missing(&contents, &parts);
+    let mut records = found.kept;
+    records.extend(more);
+    let (kept, dropped) = (records.len() / RECORD_BYTES, found.damaged + found.torn);
+    tell(&format!("{name}: {kept} records kept, {} repeated ones and {dropped} bytes dropped", found.repeated));
     if !in_place {
-        return output.write(&repaired);
+        return output.write(&[file(&header, layout, &[]), records].concat());
     }
-    let records = &repaired[repaired.len() - contents.records.len() * RECORD_BYTES..];
-    if records != &bytes[start..] {
+    if records != bytes[start..] {
         let mut out = &*handle;
         out.seek(SeekFrom::Start(start as u64)).map_err(failed)?;
-        out.write_all(records).map_err(failed)?;
+        out.write_all(&records).map_err(failed)?;
         out.set_len((start + records.len()) as u64).map_err(failed)?;
         out.sync_data().map_err(failed)?;
     }
@@ -176,6 +184,19 @@ mod tests {
         let found = Found::of(&encoded(1..6), Layout::V561);
         assert!(found.sound());
         assert_eq!(numbers(&found), [1, 2, 3, 4, 5]);
+    }
+
+    #[test]
+    fn codes_of_directions_that_are_not_written_again_are_sound() {
+        // A negative component that is stored as zero: decoded it has no sign.
+        let mut bytes = encoded(1..4);
+        let at = RECORD_BYTES + Layout::DIRECTIONS.start;
+        assert_eq!(bytes[at..at + 4], [0, 0, 0, 8]);
+        bytes[at + 3] = 9;
+        let found = Found::of(&bytes, Layout::V561);
+        assert!(found.sound());
+        assert_eq!(numbers(&found), [1, 2, 3]);
+        assert_eq!(found.kept, bytes);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Other records in, other records out: merging, pruning, converting.
 
-use crate::store::{Failure, Output, Told, contents, file, tell};
-use ambit_ambient::{Layout, Record, fingerprint_lines, missing, segments};
+use crate::store::{Failure, Output, contents, file, tell};
+use ambit_ambient::{Layout, Record, fingerprint_lines};
 use ambit_base::DVec3;
 use clap::Args;
 use std::collections::HashSet;
@@ -14,10 +14,7 @@ pub(crate) fn merge(files: &[PathBuf], output: &Output, force: bool) -> Result<(
     let mut known = HashSet::new();
     let mut first = None;
     for path in files {
-        let mut one = contents(path)?;
-        let parts = segments(path, &one, &Told);
-        let (more, _) = missing(&one, &parts);
-        one.records.extend(more);
+        let one = contents(path)?;
         let main = first.get_or_insert_with(|| (one.header.clone(), one.layout));
         if !force && !fingerprint_lines(&main.0).eq(fingerprint_lines(&one.header)) {
             let (a, b) = (files[0].display(), path.display());

@@ -1,6 +1,6 @@
 //! Ambient files in and out.
 
-use ambit_ambient::{Contents, FORMAT, Layout, RECORD_BYTES, Record, scan};
+use ambit_ambient::{Contents, FORMAT, Layout, RECORD_BYTES, Record, missing, scan, segments};
 use ambit_file::{FileLock, Header, LockMode, Replacement, os_text};
 use clap::Args;
 use std::fs::File;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// How long the lock of a file is waited for.
-const PATIENCE: Duration = Duration::from_secs(10);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Why the work ends early.
 #[derive(Debug)]
@@ -68,11 +68,14 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-/// The contents of a file.
+/// The contents of a file, with the records that wait in segments beside it.
 pub(crate) fn contents(path: &Path) -> Result<Contents, Failure> {
     let name = path.display().to_string();
-    scan(&bytes(path)?, &name)
-        .map_err(|problem| Failure::Text(format!("bad/incompatible ambient file \"{name}\": {problem}")))
+    let mut contents = scan(&bytes(path)?, &name)
+        .map_err(|problem| Failure::Text(format!("bad/incompatible ambient file \"{name}\": {problem}")))?;
+    let (more, _) = missing(&contents, &segments(path, &contents, &Told));
+    contents.records.extend(more);
+    Ok(contents)
 }
 
 /// An ambient file of these records, with the lines of `header` that still hold.
