@@ -6,6 +6,7 @@ use crate::observe::{Observer, Stopwatch};
 use crate::params::{Limits, Params};
 use crate::radii::ANISOTROPY;
 use crate::record::Record;
+use crate::reuse::Reuse;
 use crate::sampler::{Answer, Query, Sampler};
 use crate::store::Store;
 use ambit_base::{DVec3, Rgb};
@@ -22,6 +23,8 @@ pub struct Statistics {
     pub rounds: u64,
     /// Hemispheres whose value could be used but once, because samples were refused.
     pub unstored: u64,
+    /// Hemispheres whose values were used but once, because records are hardly reused there.
+    pub rented: u64,
     /// Samples with a negative or undefined radiance or distance, taken as black.
     pub repaired: u64,
 }
@@ -38,6 +41,8 @@ pub struct Cache {
     records: Vec<Record>,
     /// Radii that rein each other in, if they are to.
     reins: Option<Reins>,
+    /// Where records are hardly reused, if that is to be found out.
+    pub(crate) reuse: Option<Reuse>,
     /// Radii changed by the last record; kept for its memory.
     changed: Vec<(u32, f64)>,
     /// Counts look-ups, if they are to be counted.
@@ -62,6 +67,7 @@ impl Cache {
             statistics: Statistics::default(),
             records: Vec::new(),
             reins: params.systems.neighbour_clamping.then(|| Reins::new(cube_origin, cube_edge)),
+            reuse: params.systems.measured_reuse.then(|| Reuse::new(&Limits::new(&params, cube_edge))),
             changed: Vec::new(),
         }
     }

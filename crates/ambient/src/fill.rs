@@ -9,10 +9,11 @@
 //! and level, sums follow list order, and the constants below are part of the result.
 
 use crate::cache::Cache;
-use crate::finish::{Cell, Outcome, finish, least_distance};
+use crate::finish::{Cell, Outcome, finish, least_distance, once};
 use crate::gather::{Job, Sampled, trace};
 use crate::hemisphere::Hemisphere;
 use crate::parallel::in_order;
+use crate::reuse::RENT;
 use crate::sampler::{Miss, Query, Sampler};
 use crate::select::{CAP, Selection, select};
 use crate::store::Store;
@@ -29,6 +30,13 @@ const FIRST: usize = 2;
 const CHUNK: usize = 32;
 /// Look-ups below which a parallel step costs more than it saves.
 const FEW: usize = 64;
+
+/// Whether hemispheres are to become records.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kept {
+    Yes,
+    No,
+}
 
 /// One hemisphere of a round.
 struct Pick {
@@ -106,10 +114,16 @@ impl Cache {
             vec![0.0; queries.len()]
         };
         while !open.is_empty() {
+            for q in self.rent(sampler, level, queries, &mut open, &mut values) {
+                picked[q] = true;
+            }
+            if open.is_empty() {
+                break;
+            }
             self.statistics.rounds += 1;
             let Selection { picks, maximal, blocked } = select(&limits, queries, &open, &exempt, apart, most);
             most = (2 * most).min(CAP);
-            let outcomes = self.hemispheres(sampler, level, queries, &picks);
+            let outcomes = self.hemispheres(sampler, level, queries, &picks, Kept::Yes);
             let delta = self.publish(sampler, queries, &picks, &outcomes, &mut values);
             let mut wasted = [false; CAP];
             for (k, outcome) in outcomes.iter().enumerate() {
@@ -130,6 +144,12 @@ impl Cache {
                 .zip(found)
                 .map(|(&q, sum)| sum.answer().filter(|_| weights[q] >= enough || sum.is_enough(enough)))
                 .collect();
+            if let Some(reuse) = &mut self.reuse {
+                let own = picks.iter().zip(&outcomes).filter(|(_, o)| matches!(o, Outcome::Record(..)));
+                own.for_each(|(&q, _)| reuse.made(&queries[q]));
+                let others = open.iter().zip(&found).filter(|(_, f)| f.is_some());
+                others.for_each(|(&q, _)| reuse.served(&queries[q]));
+            }
             open = settle(&open, &found, &mut values);
             if maximal {
                 apart = (0.5 * apart).max(least);
@@ -143,6 +163,29 @@ impl Cache {
             *value = last.unwrap_or(*value);
         }
         values
+    }
+
+    /// Answers the open queries where records are hardly reused, each by a hemisphere of its own that is not kept.
+    fn rent<S: Sampler>(
+        &mut self,
+        sampler: &S,
+        level: u8,
+        queries: &[Query<S::Origin>],
+        open: &mut Vec<usize>,
+        values: &mut [Rgb],
+    ) -> Vec<usize> {
+        let Some(reuse) = &mut self.reuse else { return Vec::new() };
+        let rented: Vec<usize> = open.extract_if(.., |&mut q| reuse.rents(&queries[q])).collect();
+        let fallback = self.fallback();
+        // As many samples at a time as in a round.
+        for picks in rented.chunks(CAP * RENT as usize) {
+            let outcomes = self.hemispheres(sampler, level, queries, picks, Kept::No);
+            for (&q, outcome) in picks.iter().zip(outcomes) {
+                values[q] = outcome.value().unwrap_or(fallback);
+            }
+        }
+        self.statistics.rented += rented.len() as u64;
+        rented
     }
 
     /// Stores the records of a round in order; returns them in a tree of their own.
@@ -191,17 +234,18 @@ impl Cache {
         level: u8,
         queries: &[Query<S::Origin>],
         chosen: &[usize],
+        kept: Kept,
     ) -> Vec<Outcome> {
         let params = self.params;
         let mut picks: Vec<Pick> = in_order(chosen.len(), 2, 1, |k| {
             let q = &queries[chosen[k]];
             let weight = self.limits.record_weight(level, q.weight);
             let stream = Stream::new(0, key(q, params.seed));
-            Hemisphere::new(&params, weight, 1.0, q.normal, stream, true).map(|plan| Pick {
-                query: chosen[k],
-                plan,
-                first: 0,
-            })
+            let plan = match kept {
+                Kept::Yes => Hemisphere::new(&params, weight, 1.0, q.normal, stream, true),
+                Kept::No => Hemisphere::few(&params, weight / RENT as f32, q.normal, stream),
+            };
+            plan.map(|plan| Pick { query: chosen[k], plan, first: 0 })
         })
         .into_iter()
         .flatten()
@@ -227,12 +271,18 @@ impl Cache {
             }
             None => Cell { radiance: Rgb::ZERO, distance: 0.0, nearness: 0.0 },
         }));
-        self.extras(sampler, level, queries, &picks, &mut cells);
+        if kept == Kept::Yes {
+            self.extras(sampler, level, queries, &picks, &mut cells);
+        }
         let limits = self.limits;
         let quantised = self.quantised;
         in_order(picks.len(), 2, 1, |k| {
             let Pick { query, plan, first } = &picks[k];
-            let outcome = finish(&limits, &queries[*query], plan, &cells[*first..first + plan.len()]);
+            let own = &cells[*first..first + plan.len()];
+            if kept == Kept::No {
+                return once(&queries[*query], plan, own);
+            }
+            let outcome = finish(&limits, &queries[*query], plan, own);
             if quantised { outcome.quantised(&queries[*query]) } else { outcome }
         })
     }

@@ -10,6 +10,7 @@ use crate::params::Limits;
 use crate::radii::{Ellipse, circle, ellipse, split_sphere, turned};
 use crate::record::Record;
 use crate::sampler::Query;
+use crate::tilt::Tilt;
 use ambit_base::{Colour, DVec3, EPSILON, Rgb};
 
 /// Share of the black floor in relative radiances, which keeps black occluders visible to the Hessian.
@@ -47,6 +48,14 @@ pub(crate) enum Outcome {
 }
 
 impl Outcome {
+    /// What it answers to the query that asked; none if all samples were refused.
+    pub(crate) fn value(self) -> Option<Rgb> {
+        match self {
+            Self::Record(_, value) | Self::Once(value) => Some(value),
+            Self::Nothing => None,
+        }
+    }
+
     /// The record as an ambient file returns it, and its answer.
     pub(crate) fn quantised<O>(self, query: &Query<O>) -> Self {
         match self {
@@ -62,6 +71,19 @@ impl Outcome {
 /// The least distance that counts, so that no reciprocal gets out of hand.
 pub(crate) fn least_distance(limits: &Limits) -> f64 {
     EPSILON.min(EPSILON * limits.unit).max(1e-4 * limits.min_radius)
+}
+
+/// The mean of a hemisphere that is not kept, for the normal that textures turned.
+pub(crate) fn once<O>(query: &Query<O>, plan: &Hemisphere, cells: &[Cell]) -> Outcome {
+    let mut tilt = Tilt::default();
+    let (mut sum, mut taken) = (DVec3::ZERO, 0);
+    for (k, cell) in cells.iter().enumerate().filter(|(_, c)| c.distance > 0.0) {
+        tilt.add(plan, k, cell.radiance);
+        sum += cell.radiance.as_dvec3();
+        taken += 1;
+    }
+    let mean = (sum / cells.len() as f64).as_vec3();
+    if taken == 0 { Outcome::Nothing } else { Outcome::Once(mean * tilt.factor(plan, query.shading)) }
 }
 
 /// Turns cells into a record.

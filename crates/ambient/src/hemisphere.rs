@@ -72,6 +72,18 @@ impl Hemisphere {
         Some(Self { frame, grid, stream, child_weight, points })
     }
 
+    /// Plans a hemisphere of at most `-ad` × `weight` samples, one at least, whose value is not kept. Its rays weigh what
+    /// those of records do.
+    pub(crate) fn few(params: &Params, weight: f32, normal: DVec3, stream: Stream) -> Option<Self> {
+        if params.divisions <= 0 {
+            return None;
+        }
+        let side = ((f64::from(params.divisions) * f64::from(weight)).sqrt() as u32).clamp(1, MAX_SIDE);
+        let frame = Frame::turned(normal, TAU * stream.child(tag::TURN).one());
+        let child_weight = ASSUMED_REFLECTANCE as f32;
+        Some(Self { frame, grid: Grid::Disk { side }, stream, child_weight, points: Vec::new() })
+    }
+
     /// How it is divided.
     pub(crate) fn grid(&self) -> Grid {
         self.grid

@@ -36,6 +36,7 @@ mod parallel;
 mod params;
 mod radii;
 mod record;
+mod reuse;
 mod sampler;
 mod select;
 mod separation;
@@ -54,7 +55,7 @@ pub use file::{Comparison, Fingerprint, Gravity, Mark, MarkLine, fingerprint_lin
 pub use file::{Segment, missing, remove_done, segments};
 pub use hemisphere::Hemisphere;
 pub use observe::{Clock, LEVELS, Observed};
-pub use params::{ASSUMED_REFLECTANCE, Limits, OVERLAP, Params, Spacing, Systems};
+pub use params::{ASSUMED_REFLECTANCE, Limits, MOST_OVERLAP, OVERLAP, Params, Spacing, Systems};
 pub use record::Record;
 pub use sampler::{Answer, Miss, Query, Sample, SampleRay, Sampler};
 pub use text::TextForm;

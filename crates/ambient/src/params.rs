@@ -10,8 +10,9 @@ pub const ASSUMED_REFLECTANCE: f64 = 0.5;
 /// where light falls off within the smallest spacing.
 pub const OVERLAP: f32 = 0.2;
 
-/// A record weighs at most 1, at its own place, and a little less once it has been through a file.
-const MOST_OVERLAP: f32 = 0.9;
+/// The greatest [`Params::overlap`]: a record weighs at most 1, at its own place, and a little less once it has been
+/// through a file.
+pub const MOST_OVERLAP: f32 = 0.9;
 
 /// The options of the diffuse indirect calculation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +35,8 @@ pub struct Params {
     pub min_weight: f64,
     /// The summed weight of records (each at most 1) that a query of level 0 asks for, else it gets a record of its own;
     /// deeper levels take any weight. Radiance takes any at level 0, too: 0. But its scanlines leave records at their
-    /// reach from each other, where picks far apart leave gaps of up to twice that: [`OVERLAP`] makes about as many.
+    /// reach from each other, where picks far apart leave gaps of up to twice that: [`OVERLAP`] makes about as many. More
+    /// than [`MOST_OVERLAP`] counts as that.
     pub overlap: f32,
     /// Names the set of random numbers; two runs with equal seeds agree in every bit.
     pub seed: u64,
@@ -49,6 +51,8 @@ pub struct Systems {
     pub actual_weights: bool,
     /// `--neighbor-clamping`: no radius exceeds another record's by more than the distance between them.
     pub neighbour_clamping: bool,
+    /// `--measured-reuse`: from level 1 on few samples, used once, where records are hardly reused.
+    pub measured_reuse: bool,
     /// `--spacing`: what decides how far records reach.
     pub spacing: Spacing,
 }

@@ -67,7 +67,7 @@ fn heading(flag: &str) -> &'static str {
             "Output"
         }
         "-reuse" | "-stats" | "-unbiased" | "-unbounded-bounces" | "-exact-textures" | "-actual-weights"
-        | "-neighbor-clamping" | "-spacing" => "Interreflection",
+        | "-neighbor-clamping" | "-measured-reuse" | "-overlap" | "-spacing" => "Interreflection",
         _ => match flag.as_bytes()[0] {
             b'v' => "View",
             b'd' => "Direct light",

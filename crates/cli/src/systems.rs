@@ -4,7 +4,7 @@ use crate::common::Carries;
 use crate::failure::Failure;
 use crate::rendering::Rendering;
 use crate::table::{Place, Row};
-use ambit_render::Spacing;
+use ambit_render::{MOST_OVERLAP, Spacing};
 
 /// The rows of `--unbiased`, its parts, and the systems of the irradiance cache.
 pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
@@ -38,6 +38,26 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
             Place::Bare(|s: &mut S| light(s).options.ambient.systems.neighbour_clamping = true),
             "let no irradiance value reach farther than a neighbor does, plus the distance between them",
         ),
+        Row::new(
+            "-measured-reuse",
+            Place::Bare(|s: &mut S| light(s).options.ambient.systems.measured_reuse = true),
+            "where irradiance values of deeper bounces are hardly reused (leaves, blades, hair), use few samples and do not \
+             keep them",
+        ),
+        Row::new(
+            "-overlap",
+            Place::Reals(1, |s: &mut S, weight| {
+                let weight = weight[0] as f32;
+                if !(0.0..=MOST_OVERLAP).contains(&weight) {
+                    return Err(Failure::at("--overlap"));
+                }
+                light(s).options.ambient.overlap = weight;
+                Ok(())
+            }),
+            "the weight that irradiance values around a point must add up to before it does without one of its own, for what \
+             is seen directly; 0 (as in Radiance, whose pixels come in another order: any) to 0.9; .2 unless given",
+        )
+        .values("WEIGHT"),
         Row::new(
             "-spacing",
             Place::Word(|s: &mut S, how, _| {

@@ -291,6 +291,8 @@ fn option_marks(options: &Options, edge: f64) -> Vec<Mark> {
         slight("spacing", "--spacing", spacing(a.systems.spacing).to_owned()),
         slight("clamping", "--neighbor-clamping", switch(a.systems.neighbour_clamping)),
         slight("weights", "--actual-weights", switch(a.systems.actual_weights)),
+        slight("overlap", "--overlap", g(f64::from(a.overlap))),
+        slight("measured", "--measured-reuse", switch(a.systems.measured_reuse)),
     ]
 }
 

@@ -23,7 +23,7 @@ mod walk;
 mod work;
 
 pub use ambit_ambient::{Fingerprint, Reuse};
-pub use ambit_ambient::{Spacing, Systems};
+pub use ambit_ambient::{MOST_OVERLAP, Spacing, Systems};
 pub use error::Error;
 pub use options::{Ambient, Direct, Limits, Medium, Options, Selection, Specular};
 pub use prepare::{Definition, Environment, Loaded, OctreeSource, load};

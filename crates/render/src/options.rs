@@ -1,6 +1,6 @@
 //! Every parameter of a calculation, complete and typed: what the rendering options of `rpict` and `rtrace` set.
 
-use ambit_ambient::Systems;
+use ambit_ambient::{OVERLAP, Systems};
 use ambit_base::Rgb;
 
 /// Parameters shared by all programs that trace light.
@@ -77,6 +77,8 @@ pub struct Ambient {
     pub unbounded: bool,
     /// `--exact-textures`: without a cache hemispheres stand on the textured normal.
     pub exact_textures: bool,
+    /// `--overlap`: the weight of records that a question from the eye asks for, 0 (any) to 0.9.
+    pub overlap: f32,
     /// Systems of the cache that Radiance does not have.
     pub systems: Systems,
 }
@@ -140,6 +142,7 @@ impl Options {
                 selection: Selection::All,
                 unbounded: false,
                 exact_textures: false,
+                overlap: OVERLAP,
                 systems: Systems::default(),
             },
             medium: Medium { extinction: Rgb::ZERO, albedo: Rgb::ZERO, eccentricity: 0.0, sampling: 0.0 },

@@ -14,7 +14,7 @@ use crate::tracer::{Origin, Tracer};
 use crate::walk::Walk;
 use crate::work::Work;
 use crate::{Error, Options};
-use ambit_ambient::{Cache, Miss, OVERLAP, Params};
+use ambit_ambient::{Cache, Miss, Params};
 use ambit_base::{DVec3, FAR, Notify, Rgb, Stream, hash_bits};
 use ambit_scene::{ObjectId, VOID};
 use rayon::prelude::*;
@@ -59,7 +59,7 @@ impl Renderer {
             value: a.value,
             weight: a.weight,
             min_weight: options.limits.weight,
-            overlap: OVERLAP,
+            overlap: a.overlap,
             seed: options.seed,
             systems: a.systems,
         };

@@ -1,0 +1,154 @@
+//! How many records there are: `--measured-reuse` on thousands of blades in a box, against the answers without a cache,
+//! and `--overlap`.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use ambit_tests::Program;
+use ambit_tests::programs::foreign;
+
+const BLADES: u32 = 2500;
+/// Rays a side.
+const SIDE: u32 = 24;
+
+/// A closed box with a lamp under its ceiling and blades on its floor.
+fn meadow() -> String {
+    let mut scene = "void plastic wall 0 0 5 .7 .7 .7 0 0\nvoid plastic leaf 0 0 5 .5 .6 .3 0 0\n\
+                     void light lamp 0 0 3 20 20 20\n"
+        .to_owned();
+    let mut polygon = |modifier: &str, corners: &[[f64; 3]]| {
+        write!(scene, "{modifier} polygon p 0 0 {}", 3 * corners.len()).expect("a text grows");
+        for [x, y, z] in corners {
+            write!(scene, " {x:.5} {y:.5} {z:.5}").expect("a text grows");
+        }
+        scene.push('\n');
+    };
+    for z in [0.0, 1.0] {
+        polygon("wall", &[[0.0, 0.0, z], [1.0, 0.0, z], [1.0, 1.0, z], [0.0, 1.0, z]]);
+        polygon("wall", &[[z, 0.0, 0.0], [z, 1.0, 0.0], [z, 1.0, 1.0], [z, 0.0, 1.0]]);
+        polygon("wall", &[[0.0, z, 0.0], [0.0, z, 1.0], [1.0, z, 1.0], [1.0, z, 0.0]]);
+    }
+    polygon("lamp", &[[0.6, 0.4, 0.99], [0.6, 0.6, 0.99], [0.9, 0.6, 0.99], [0.9, 0.4, 0.99]]);
+    let mut state = 1u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as f64 / f64::from(1u32 << 31)
+    };
+    for _ in 0..BLADES {
+        let (x, y) = (0.15 + 0.7 * random(), 0.3 + 0.6 * random());
+        let (across, along, lean, height) = (6.3 * random(), 6.3 * random(), 0.15 * random(), 0.18 + 0.12 * random());
+        let (dx, dy) = (0.003 * across.cos(), 0.003 * across.sin());
+        let tip = [x + lean * along.cos(), y + lean * along.sin(), height];
+        polygon("leaf", &[[x - dx, y - dy, 0.001], [x + dx, y + dy, 0.001], tip]);
+    }
+    scene
+}
+
+/// Rays from the eye over the picture.
+fn rays() -> String {
+    let at = |k: u32| (f64::from(k) + 0.5) / f64::from(SIDE) - 0.5;
+    let ray = |k: u32| format!("0.5 0.02 0.6 {} 0.8 {}", at(k % SIDE), -0.5 + at(k / SIDE));
+    let rays: Vec<String> = (0..SIDE * SIDE).map(ray).collect();
+    rays.join("\n") + "\n"
+}
+
+/// Brightness along every ray, and the hemisphere samples it took.
+fn traced(octree: &Path, options: &str) -> (Vec<f64>, u64) {
+    let answer = Program::new("rtrace")
+        .line("-h -w- -ab 2 -as 0 -dt 0 -ds 0 -dj 0 --stats")
+        .line(options)
+        .arg(octree)
+        .feed(rays().as_bytes())
+        .well(options);
+    let number = |word: &str| word.parse::<f64>().expect("a number");
+    let values = answer.text().lines().map(|line| line.split_whitespace().map(number).sum()).collect();
+    let (before, _) = answer.err.split_once(" hemisphere samples").expect("statistics were asked for");
+    (values, before.rsplit(' ').next().and_then(|n| n.parse().ok()).expect("a number"))
+}
+
+/// RMS difference over the mean.
+fn error(values: &[f64], reference: &[f64]) -> f64 {
+    let squares: f64 = values.iter().zip(reference).map(|(a, b)| (a - b).powi(2)).sum();
+    let n = reference.len() as f64;
+    (squares / n).sqrt() / (reference.iter().sum::<f64>() / n)
+}
+
+fn compiled(scratch: &Path) -> PathBuf {
+    let octree = scratch.join("scene.oct");
+    let frozen = Program::new("oconv").line("-f -").feed(meadow().as_bytes()).well("oconv").out;
+    std::fs::write(&octree, frozen).expect("the scratch folder can be written");
+    octree
+}
+
+#[test]
+fn hairy_surfaces_take_fewer_samples_at_no_greater_error() {
+    if foreign() {
+        return; // The option is ours.
+    }
+    let scratch = tempfile::tempdir().expect("a scratch folder can be made");
+    let octree = compiled(scratch.path());
+    let (reference, none) = traced(&octree, "-aa 0 -ad 2048 -lw 1e-7");
+    assert!(none == 0 && reference.len() == (SIDE * SIDE) as usize);
+    let cached = "-aa .2 -ar 64 -ad 128";
+    let (plain, many) = traced(&octree, cached);
+    let (switched, fewer) = traced(&octree, &format!("{cached} --measured-reuse"));
+    let (before, after) = (error(&plain, &reference), error(&switched, &reference));
+    println!("{many} samples, error {before}; with the switch {fewer} samples, error {after}");
+    assert!(before < 0.1, "the reference is one: {before}");
+    assert!(10 * fewer < 7 * many, "{fewer} of {many} samples");
+    // An RMS of so many values is itself known to one part in √(2n).
+    let known = 1.0 / f64::from(2 * SIDE * SIDE).sqrt();
+    assert!(after <= before * (1.0 + known), "{after} instead of {before}");
+    let (other, same) = traced(&octree, &format!("{cached} --measured-reuse -n 5"));
+    assert!(other == switched && same == fewer, "-n 5 changes the answers");
+}
+
+/// The switch must leave alone what is well reused: a plain box.
+#[test]
+fn plain_surfaces_are_hardly_touched() {
+    if foreign() {
+        return;
+    }
+    let scratch = tempfile::tempdir().expect("a scratch folder can be made");
+    let octree = ambit_tests::Fixture::named("cornell").compile(scratch.path());
+    let sensors = std::fs::read(ambit_tests::Fixture::named("cornell").sensors).expect("sensors are checked in");
+    let run = |option: &str| {
+        let program = Program::new("rtrace").line("-h -w- -I -ab 3 -ad 256 -as 0 -aa .2 -ar 64 --stats").line(option);
+        let err = program.arg(&octree).feed(&sensors).well(option).err;
+        let (before, _) = err.split_once(" hemisphere samples").expect("statistics were asked for");
+        before.rsplit(' ').next().and_then(|n| n.parse::<f64>().ok()).expect("a number")
+    };
+    let (without, with) = (run(""), run("--measured-reuse"));
+    println!("{without} samples, {with} with the switch");
+    assert!((with / without - 1.0).abs() < 0.02, "{with} samples instead of {without}");
+}
+
+/// The overlap that is asked for decides how many records there are.
+#[test]
+fn overlap_is_an_option() {
+    if foreign() {
+        return;
+    }
+    let scratch = tempfile::tempdir().expect("a scratch folder can be made");
+    let octree = ambit_tests::Fixture::named("cornell").compile(scratch.path());
+    let point = |k: u32| format!("{} {} .001 0 0 1", 0.1 + 0.04 * f64::from(k % 20), 0.1 + 0.04 * f64::from(k / 20));
+    let grid: Vec<String> = (0..400).map(point).collect();
+    let grid = grid.join("\n") + "\n";
+    let run = |line: &str| {
+        let program = Program::new("rtrace").line("-h -w- -I -ab 1 -ad 64 -as 0 -aa .3 -ar 64 --stats").line(line);
+        program.arg(&octree).feed(grid.as_bytes())
+    };
+    let made = |line: &str| {
+        let err = run(line).well(line).err;
+        let (before, _) = err.split_once(" records").expect("statistics were asked for");
+        before.rsplit(' ').next().and_then(|n| n.parse::<u64>().ok()).expect("a number")
+    };
+    let counts = ["--overlap 0", "--overlap .2", "--overlap .6"].map(made);
+    println!("{counts:?} records");
+    assert!(counts[0] > 5 && counts[0] < counts[1] && counts[1] < counts[2], "{counts:?}");
+    assert_eq!(made(""), counts[1], ".2 unless given");
+    for wrong in ["--overlap 1", "--overlap -.1"] {
+        let answer = run(wrong);
+        assert!(answer.status == Some(1) && answer.err.contains("'--overlap'"), "{wrong}: {}", answer.err);
+    }
+}
