@@ -9,7 +9,7 @@ use ambit_tests::programs::foreign;
 
 const BLADES: u32 = 2500;
 /// Rays a side.
-const SIDE: u32 = 24;
+const SIDE: u32 = 20;
 
 /// A closed box with a lamp under its ceiling and blades on its floor.
 fn meadow() -> String {
@@ -87,7 +87,7 @@ fn hairy_surfaces_take_fewer_samples_at_no_greater_error() {
     }
     let scratch = tempfile::tempdir().expect("a scratch folder can be made");
     let octree = compiled(scratch.path());
-    let (reference, none) = traced(&octree, "-aa 0 -ad 2048 -lw 1e-7");
+    let (reference, none) = traced(&octree, "-aa 0 -ad 1024 -lw 1e-7");
     assert!(none == 0 && reference.len() == (SIDE * SIDE) as usize);
     let cached = "-aa .2 -ar 64 -ad 128";
     let (plain, many) = traced(&octree, cached);
