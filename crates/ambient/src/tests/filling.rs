@@ -82,17 +82,55 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
     }
 }
 
+/// The four rooms that work is measured in.
+fn rooms() -> [(&'static str, Room); 4] {
+    [("empty", Room::empty()), ("blocks", Room::new()), ("divided", Room::divided()), ("blades", Room::hairy(150))]
+}
+
+/// Records and samples of the rounds over those of the serial cache, and means; says so.
+fn compared(what: &str, params: Params, room: &Room, side: u32) -> [f64; 3] {
+    let (ours, serial) = (rounds(params, room, side, 2), reference(params, room, side));
+    let ratio = |a: u64, b: u64| a as f64 / b as f64;
+    let ratios = [
+        ratio(ours.records as u64, serial.records as u64),
+        ratio(ours.samples, serial.samples),
+        f64::from(ours.mean() / serial.mean()),
+    ];
+    println!(
+        "| {what} | {side}² | {} | {} | {} | {:.3} | {} | {} | {:.3} | {:.3} |",
+        params.bounces, params.overlap, serial.records, ratios[0], serial.samples, ours.samples, ratios[1], ratios[2]
+    );
+    ratios
+}
+
 #[test]
 fn rounds_take_the_work_of_the_serial_cache() {
-    let room = Room::new();
-    for (params, side) in [(params(1), 40), (params(3), 20), (Params { accuracy: 0.35, ..params(5) }, 16)] {
-        let (ours, serial) = (rounds(params, &room, side, 2), reference(params, &room, side));
-        let within = |a: f64, b: f64, tolerance: f64, what: &str| {
-            assert!((a / b - 1.0).abs() <= tolerance, "-ab {}: {what} {a} instead of {b}", params.bounces);
-        };
-        within(ours.records as f64, serial.records as f64, 0.05, "records");
-        within(ours.samples as f64, serial.samples as f64, 0.05, "samples");
-        within(f64::from(ours.mean()), f64::from(serial.mean()), 0.03, "mean");
+    let overlap = crate::OVERLAP;
+    for (params, side) in [
+        (params(1), 40),
+        (params(3), 20),
+        (Params { accuracy: 0.35, ..params(5) }, 16),
+        (Params { overlap, ..params(2) }, 24),
+    ] {
+        let [records, samples, mean] = compared("blocks", params, &Room::new(), side);
+        assert!((records - 1.0).abs() <= 0.05, "-ab {}: {records} of the records", params.bounces);
+        assert!((samples - 1.0).abs() <= 0.05, "-ab {}: {samples} of the samples", params.bounces);
+        assert!((mean - 1.0).abs() <= 0.03, "-ab {}: {mean} of the mean", params.bounces);
+    }
+}
+
+/// The table of docs/irradiance-cache.md: `cargo test --profile tested -p ambit-ambient work_in_four_rooms -- --ignored
+/// --nocapture`.
+#[test]
+#[ignore = "takes minutes; makes a table"]
+fn work_in_four_rooms() {
+    println!("| room | pixels | -ab | overlap | records, serial | ratio | samples, serial | rounds | ratio | mean |");
+    for (name, room) in rooms() {
+        for (bounces, side) in [(1, 64), (2, 32), (3, 32)] {
+            for overlap in [0.0, crate::OVERLAP] {
+                compared(name, Params { overlap, ..params(bounces) }, &room, side);
+            }
+        }
     }
 }
 

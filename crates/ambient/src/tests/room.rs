@@ -32,7 +32,38 @@ pub(crate) struct Hit {
 }
 
 impl Room {
+    /// With two blocks.
     pub(crate) fn new() -> Self {
+        let mut room = Self::empty();
+        room.block(0.33, 0.65, [0.15, 0.15, 0.6], 17.0);
+        room.block(0.68, 0.38, [0.14, 0.15, 0.3], -18.0);
+        room
+    }
+
+    /// With a wall from side to side that leaves a door.
+    pub(crate) fn divided() -> Self {
+        let mut room = Self::empty();
+        let white = Vec3::splat(0.7);
+        room.add(DVec3::new(0.0, 0.7, 0.0), DVec3::X * 0.7, DVec3::Z, white);
+        room.add(DVec3::new(0.7, 0.7, 0.6), DVec3::X * 0.3, DVec3::Z * 0.4, white);
+        room
+    }
+
+    /// With thin blades on the floor.
+    pub(crate) fn hairy(blades: u32) -> Self {
+        let mut room = Self::empty();
+        for k in 0..blades {
+            let at = |a: f64| (f64::from(k) * a).fract();
+            let (s, c) = (6.3 * at(0.754_877_67)).sin_cos();
+            let foot = DVec3::new(0.1 + 0.8 * at(0.618_033_99), 0.3 + 0.6 * at(0.414_213_56), 0.0);
+            let lean = DVec3::new(-s, c, 0.0) * (0.2 * at(0.569_840_29) - 0.1);
+            room.add(foot, DVec3::new(c, s, 0.0) * 0.01, lean + DVec3::Z * 0.3, Vec3::new(0.5, 0.6, 0.3));
+        }
+        room
+    }
+
+    /// With nothing in it.
+    pub(crate) fn empty() -> Self {
         let white = Vec3::splat(0.7);
         let (o, x, y, z) = (DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z);
         let lamp = [DVec3::new(0.4, 0.45, 0.995), y * 0.2, x * 0.2];
@@ -44,8 +75,6 @@ impl Room {
         room.add(x, z, y, Vec3::new(0.12, 0.45, 0.1));
         room.add(o, z, x, white * 0.7);
         room.add(y, x, z, white);
-        room.block(0.33, 0.65, [0.15, 0.15, 0.6], 17.0);
-        room.block(0.68, 0.38, [0.14, 0.15, 0.3], -18.0);
         room
     }
 
