@@ -44,7 +44,7 @@ CACHED_SENSORS = "-ab 2 -aa .15 -ar 32 -ad 400 -as 100 -dj 0 -ds .1 -lw 1e-4 -lr
 # A converged picture that takes longer is given up; the cached pictures are then compared with each other.
 PATIENCE = 120
 
-# Runs of ours that are averaged where one fails; Radiance knows no seeds.
+# Runs of ours that are averaged where one fails.
 SEEDS = 8
 # Greatest relative difference of means.
 MEAN = 0.01
@@ -88,9 +88,15 @@ def direct(scene, ours, theirs):
     return Line(check, "agrees" if good else "FAILS", note=note)
 
 
-def judge(check, ours, b, reference):
-    """Verdict over values of ours, one array a seed, and of theirs; the mean may lie between theirs and the converged one."""
-    a = np.mean(ours, axis=0)
+def runs(side, first, count, get):
+    """What get(options) returns in runs `first` to `count`: the first with fixed random numbers, then with others each."""
+    other = lambda run: ["--seed", str(run)] if side.name == "ours" else ["-u+"]
+    return [get([] if run == 0 else other(run)) for run in range(first, count)]
+
+
+def judge(check, ours, theirs, reference):
+    """Verdict over arrays of ours, and of theirs, one a run; the mean may lie between theirs and the converged one."""
+    a, b = np.mean(ours, axis=0), np.mean(theirs, axis=0)
     if not np.isfinite(a).all():
         return Line(check, "FAILS", note="not finite")
     if reference is None:
@@ -99,11 +105,14 @@ def judge(check, ours, b, reference):
         return Line(check, "agrees" if good else "FAILS", note=f"no converged one; means differ by {percent(error)}, RMS {percent(pictures.rms(a, b))}")
     ends = sorted([b.mean(), reference.mean()])
     outside = max(ends[0] - a.mean(), a.mean() - ends[1], 0) / reference.mean()
-    mine, other = np.mean([pictures.rms(one, reference) for one in ours]), pictures.rms(b, reference)
+    errors = [[pictures.rms(one, reference) for one in side] for side in (ours, theirs)]
+    mine, other = map(np.mean, errors)
     good = outside <= MEAN and mine <= WORSE * other + NOISE
-    show = lambda x, e: f"mean {100 * (x.mean() / reference.mean() - 1):+.2f} %, RMS {percent(e)}"
-    note = f"{len(ours)} seeds" if len(ours) > 1 else ""
-    return Line(check, "agrees" if good else "FAILS", show(a, mine), show(b, other), note)
+    def show(x, errors):
+        spread = f" ± {percent(np.std(errors, ddof=1) / len(errors) ** 0.5)}" if len(errors) > 1 else ""
+        return f"mean {100 * (x.mean() / reference.mean() - 1):+.2f} %, RMS {percent(np.mean(errors))}{spread}"
+    note = f"{len(ours)} and {len(theirs)} runs" if len(ours) > 1 else ""
+    return Line(check, "agrees" if good else "FAILS", show(a, errors[0]), show(b, errors[1]), note)
 
 
 def converged(name, make):
@@ -120,32 +129,37 @@ def converged(name, make):
     return result if result.size else None
 
 
-def cached(scene, ours, theirs):
+def random(check, ours, theirs, reference, get, count):
+    """Judges what get(side, options) returns in `count` runs of either side."""
+    a, b = (runs(side, 0, count, lambda more, side=side: get(side, more)) for side in (ours, theirs))
+    line = judge(check, a, b, reference)
+    if line.verdict == "FAILS" and count < SEEDS:
+        # One run's mean scatters by more than the limit in small pictures of few records: several tell.
+        a += runs(ours, count, SEEDS, lambda more: get(ours, more))
+        line = judge(check, a, b, reference)
+    return line
+
+
+def cached(scene, ours, theirs, count=1):
     check = f"{scene.name} cached"
     get = lambda side, kind, options, patience: pictures.boxes(
         pictures.read(scene.picture(side, folder(side.name, scene.name, kind), options, SIZE, patience)), BOXES)
     reference = converged(check, lambda: get(theirs, "converged", CONVERGED, PATIENCE))
-    a, b = (get(side, "cached", CACHED, 600) for side in (ours, theirs))
-    line = judge(check, [a], b, reference)
-    if line.verdict == "FAILS":
-        # One run's mean scatters by more than the limit in small pictures of few records: several tell.
-        more = [get(ours, "cached", [*CACHED, "--seed", str(seed)], 600) for seed in range(1, SEEDS)]
-        line = judge(check, [a, *more], b, reference)
-    return line
+    return random(check, ours, theirs, reference, lambda side, more: get(side, "cached", [*CACHED, *more], 600), count)
 
 
 def numbers(text):
     return np.array([[float(w) for w in line.split()] for line in text.decode().splitlines()])
 
 
-def sensors(scene, ours, theirs):
+def sensors(scene, ours, theirs, count=1):
     check = f"{scene.name} sensors"
     rays = scene.sensors.read_bytes()
     def get(side, options, patience=600):
         octree = scene.octree(side, folder(side.name, scene.name, "sensors") / "scene.oct")
         return numbers(side.run("rtrace", ["-h", "-I", *options, octree], scene.folder, rays, timeout=patience))
     reference = converged(check, lambda: get(theirs, CONVERGED_SENSORS, PATIENCE))
-    return judge(check, [get(ours, CACHED_SENSORS)], get(theirs, CACHED_SENSORS), reference)
+    return random(check, ours, theirs, reference, lambda side, more: get(side, [*CACHED_SENSORS, *more]), count)
 
 
 def octree(scene, ours, theirs):
@@ -227,11 +241,19 @@ def known_differences():
     return {m[1]: m[2] for m in re.finditer(r"^\| `(\S+ \w+)` \| (.+?) \|$", text, re.M)}
 
 
+def option(words, name, default):
+    """Takes an option and its value out of the words."""
+    if name not in words:
+        return default
+    at = words.index(name)
+    value = type(default)(words[at + 1])
+    del words[at:at + 2]
+    return value
+
+
 def main():
     words = sys.argv[1:]
-    minutes = float(words[words.index("--minutes") + 1]) if "--minutes" in words else 20
-    if "--minutes" in words:
-        del words[words.index("--minutes"):words.index("--minutes") + 2]
+    minutes, count = option(words, "--minutes", 20.0), option(words, "--runs", 1)
     ours, theirs = scenes.sides(os.environ["AMBIT_TOOLS_DIR"], WORK.parent / "oracle")
     bundled, outside = scenes.bundled(), scenes.outside()
     jobs = [(f, s) for s in bundled for f in (octree, lookamb, direct, sensors, cached)]
@@ -247,7 +269,8 @@ def main():
             return Line(name(job), "not reached")
         start = time.monotonic()
         try:
-            line = job[0](job[1], ours, theirs)
+            more = {"count": count} if job[0] in (cached, sensors) else {}
+            line = job[0](job[1], ours, theirs, **more)
         except (RuntimeError, ValueError, OSError, subprocess.TimeoutExpired) as error:
             line = Line(name(job), "FAILS", note=str(error)[:160])
         if line.verdict == "FAILS" and line.check in known:

@@ -134,6 +134,18 @@ fn what_changed_is_named() {
     assert!(after.starts_with(&before));
 }
 
+#[test]
+fn relays_of_light_count_only_where_there_are_mirrors() {
+    let bench = Bench::new();
+    bench.warnings("", "s");
+    assert_eq!(bench.warnings("-dr 0", "s"), "");
+    let bench = Bench::new();
+    bench.scene("m", &format!("{ROOM}void mirror glass 0 0 3 .9 .9 .9\nglass ring round 0 0 8 3.9 1 1 -1 0 0 0 .4\n"));
+    bench.warnings("", "m");
+    let heard = bench.warnings("-dr 0", "m");
+    assert!(heard.contains("does not fit: other virtual light sources (-dr)"), "{heard}");
+}
+
 /// The same file after all reflectances were cut to 30 %: real Radiance uses it without a word.
 #[test]
 fn a_stale_file_is_found_out() {

@@ -26,7 +26,10 @@ impl Loaded {
     pub fn fingerprint(&self, options: &Options, environment: &Environment<'_>) -> Fingerprint {
         let modifiers = Modifiers::of(&self.scene, environment);
         let mut marks = scene_marks(&Surfaces { loaded: self, modifiers: &modifiers }.total(), environment);
-        marks.extend(option_marks(options, self.cube.edge));
+        // Where nothing relays light, -dr changes nothing.
+        let relays =
+            self.scene.ids().any(|id| matches!(self.scene.object(id).kind, Kind::Mirror | Kind::Prism1 | Kind::Prism2));
+        marks.extend(option_marks(options, self.cube.edge, relays));
         Fingerprint { marks }
     }
 }
@@ -252,7 +255,7 @@ fn scene_marks(sum: &Sum, environment: &Environment<'_>) -> Vec<Mark> {
     ]
 }
 
-fn option_marks(options: &Options, edge: f64) -> Vec<Mark> {
+fn option_marks(options: &Options, edge: f64, relays: bool) -> Vec<Mark> {
     let (a, d, s, medium) = (&options.ambient, &options.direct, &options.specular, &options.medium);
     let g = |x: f64| general(x, 6);
     let colour = |c: Rgb| c.to_array().map(|x| g(f64::from(x))).join(",");
@@ -270,7 +273,7 @@ fn option_marks(options: &Options, edge: f64) -> Vec<Mark> {
         decisive("ma", "-ma", colour(medium.albedo)),
         decisive("mg", "-mg", g(medium.eccentricity)),
         decisive("bv", "-bv", switch(options.back_visible)),
-        decisive("virtual", "virtual light sources (-dr)", switch(d.relays > 0)),
+        decisive("virtual", "virtual light sources (-dr)", switch(!relays || d.relays > 0)),
         accuracy("ad", "-ad", a.divisions.to_string()),
         accuracy("as", "-as", a.super_samples.to_string()),
         accuracy("ar", "-ar", a.resolution.to_string()),
