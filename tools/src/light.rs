@@ -5,7 +5,7 @@ use ambit_base::EPSILON;
 use ambit_cli::{Class, Failure, Function, Rendering};
 use ambit_file::{Header, general};
 use ambit_render::picture::SourceOutline;
-use ambit_render::{Answer, Definition, Environment, OctreeSource, Renderer, Request, Store, load};
+use ambit_render::{Answer, Definition, Environment, Names, OctreeSource, Renderer, Request, Store, TreeRay, load};
 use ambit_scene::{ErrorClass, ObjectId};
 use std::borrow::Cow;
 use std::path::Path;
@@ -14,6 +14,8 @@ use std::path::Path;
 pub(crate) trait Light {
     /// Answers a batch, in order.
     fn trace(&mut self, requests: &[Request]) -> Result<Vec<Answer>, Stop>;
+    /// Answers one ray, and shows all that follow from it as they finish.
+    fn trace_tree(&mut self, request: &Request, visit: &mut dyn FnMut(&TreeRay, Names<'_>)) -> Result<Answer, Stop>;
     /// The name of an object.
     fn name(&self, id: ObjectId) -> Cow<'_, str>;
 }
@@ -94,6 +96,13 @@ impl Light for Scene<'_> {
         let answers = self.renderer.trace(requests, &self.session.messages).map_err(failed)?;
         self.session.meter.set_rays(self.renderer.rays());
         Ok(answers)
+    }
+
+    fn trace_tree(&mut self, request: &Request, visit: &mut dyn FnMut(&TreeRay, Names<'_>)) -> Result<Answer, Stop> {
+        self.session.check()?;
+        let answer = self.renderer.trace_tree(request, &self.session.messages, visit).map_err(failed)?;
+        self.session.meter.set_rays(self.renderer.rays());
+        Ok(answer)
     }
 
     fn name(&self, id: ObjectId) -> Cow<'_, str> {

@@ -196,7 +196,7 @@ fn errors_have_their_class_and_status() {
         ("-P file", "rtrace: fatal - persist mode (-P, -PP) without an octree is not supported", 1),
         ("-cs 9 scene.oct", "rtrace: fatal - spectral calculation (-cs above 3) is not supported", 1),
         ("-ovt scene.oct", "", 0),
-        ("-otv scene.oct", "rtrace: fatal - ray tree output (-otv) is not supported", 1),
+        ("-fac -otv scene.oct", "rtrace: fatal - color format only with -ov, -or, -ox", 1),
     ] {
         let answer = bench.rtrace(line, b"");
         if status != 0 {

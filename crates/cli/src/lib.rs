@@ -37,7 +37,7 @@ pub use rays::{InputFormat, OutputFormat, RayOptions, ray_table};
 pub use rendering::{Function, PhotonMap, Rendering, Spectrum};
 pub use scan::{Arguments, Scan, scan};
 pub use signals::{Caught, Signals};
-pub use spec::{Field, OutputSpec};
+pub use spec::{Field, OutputSpec, TreeSpec};
 pub use table::{Label, Place, Row};
 
 /// What `-version` prints and what headers record as the software: the version of Radiance whose files and options

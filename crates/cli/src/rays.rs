@@ -200,7 +200,8 @@ fn format_rows() -> Vec<Row<RayOptions>> {
             ),
             "what to write of a ray: o origin, d direction, v value, V contribution, w weight, W coefficient, l length, \
              L first length, c coordinates, p point, n normal, N true normal, s surface, m modifier, M material, \
-             r and x mirrored and other part of the value, R and X their distances, ~ a tilde",
+             r and x mirrored and other part of the value, R and X their distances, ~ a tilde; t: what follows is written \
+             of every ray of the tree as it finishes, T: of shadow rays, too",
         )
         .values("FIELDS")
         .shown(Label::Own(|s| Label::tabs(&format!("-o{:<9}", s.fields), 3, &format!("output{}", spec_words(&s.fields))))),

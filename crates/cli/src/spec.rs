@@ -85,38 +85,47 @@ pub(crate) fn spec_words(letters: &str) -> String {
     letters.chars().map(word).collect()
 }
 
+/// What is written of every ray of a tree.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TreeSpec {
+    /// The fields.
+    pub fields: Vec<Field>,
+    /// `T`: shadow rays that reach their source are written, too.
+    pub shadows: bool,
+}
+
 /// The fields of a record, in order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputSpec {
-    /// The fields.
+    /// The fields of the primary ray, written when it has been answered.
     pub fields: Vec<Field>,
+    /// `t` or `T`: what is written of every ray that follows from it, before that.
+    pub tree: Option<TreeSpec>,
 }
 
 impl OutputSpec {
-    /// Reads the letters after `-o`.
+    /// Reads the letters after `-o`: those before the first `t` or `T` are the record's, those after the last one the
+    /// tree's. One with no letter after it means nothing.
     ///
     /// # Errors
-    /// For no letter, a letter that is none, and the ray trees of `t` and `T`, which are not supported (without a
-    /// letter after them they mean nothing).
+    /// For no letter, and for a letter that is none.
     pub fn parse(letters: &str) -> Result<Self, Failure> {
         if letters.is_empty() {
             return Err(Failure::user("empty output specification"));
         }
-        let flat = letters.trim_end_matches(['t', 'T']);
-        let mut fields = Vec::new();
-        for c in flat.chars() {
+        let (mut fields, mut tree) = (Vec::new(), None);
+        for c in letters.trim_end_matches(['t', 'T']).chars() {
             match LETTERS.iter().find(|row| row.0 == c) {
-                Some(row) => fields.push(row.1),
-                None if c == 't' || c == 'T' => {
-                    return Err(Failure::unsupported(&format!("ray tree output (-o{letters}) is")));
-                }
+                Some(row) => tree.as_mut().unwrap_or(&mut fields).push(row.1),
+                None if c == 't' || c == 'T' => tree = Some(Vec::new()),
                 None => return Err(Failure::user(format!("unrecognized output option '{c}'"))),
             }
         }
-        Ok(Self { fields })
+        let tree = tree.map(|fields| TreeSpec { fields, shadows: letters.contains('T') });
+        Ok(Self { fields, tree })
     }
 
-    /// True if a field needs the ray to be shaded, not only cast.
+    /// True if a field needs the ray to be shaded, not only cast. Trees always do.
     pub fn shades(&self) -> bool {
         use Field::{
             Coefficient, Contribution, Length, Mirrored, MirroredLength, Normal, Unmirrored, UnmirroredLength, Value,
@@ -135,10 +144,10 @@ impl OutputSpec {
                     | UnmirroredLength
             )
         };
-        self.fields.iter().any(shaded)
+        self.tree.is_some() || self.fields.iter().any(shaded)
     }
 
-    /// True if a field is one of these.
+    /// True if a field of the record is one of these.
     pub fn has(&self, fields: &[Field]) -> bool {
         self.fields.iter().any(|f| fields.contains(f))
     }
@@ -169,13 +178,24 @@ mod tests {
         assert_eq!(spec.components(1), 14);
         assert!(spec.shades());
         assert!(!OutputSpec::parse("odLcpNsmMw~").unwrap().shades());
-        assert_eq!(OutputSpec::parse("vt").unwrap().fields, [Field::Value]);
-        for (letters, text) in [
-            ("", "empty output specification"),
-            ("vq", "unrecognized output option 'q'"),
-            ("vts", "ray tree output (-ovts) is not supported"),
-        ] {
+        let plain = OutputSpec::parse("vt").unwrap();
+        assert_eq!((&plain.fields[..], plain.tree), (&[Field::Value][..], None));
+        for (letters, text) in [("", "empty output specification"), ("vq", "unrecognized output option 'q'")] {
             assert_eq!(OutputSpec::parse(letters).unwrap_err().text, text);
         }
+    }
+
+    #[test]
+    fn letters_after_a_t_are_the_trees() {
+        let spec = |letters| {
+            let spec = OutputSpec::parse(letters).unwrap();
+            let tree = spec.tree.unwrap();
+            (spec.fields, tree.fields, tree.shadows)
+        };
+        assert_eq!(spec("ts"), (vec![], vec![Field::Surface], false));
+        assert_eq!(spec("vTsd"), (vec![Field::Value], vec![Field::Surface, Field::Direction], true));
+        assert_eq!(spec("sTvtp"), (vec![Field::Surface], vec![Field::Point], true));
+        assert_eq!(spec("sTvt"), (vec![Field::Surface], vec![Field::Value], true));
+        assert!(OutputSpec::parse("tv").unwrap().shades());
     }
 }

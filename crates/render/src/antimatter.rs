@@ -1,5 +1,6 @@
 //! antimatter: volumes in which listed modifiers are invisible.
 
+use crate::observer::Observer;
 use crate::ray::{ClipSet, Kinds, Ray};
 use crate::walk::Walk;
 use ambit_scene::{ObjectId, VOID};
@@ -51,7 +52,7 @@ impl ClipSets {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn antimatter(&mut self, ray: &mut Ray<'_>, m: &Antimatter) -> bool {
         let front = ray.cosine() > 0.0;
         ray.next_clipped = self.tracer.scene.clip_sets.changed(ray.clipped, &m.listed, front);

@@ -1,6 +1,7 @@
 //! Diffuse interreflection at one hit: ask the cache, defer what it cannot answer, or sample a hemisphere on the spot
 //! where nothing is cached (`-aa 0`).
 
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::tracer::Origin;
 use crate::walk::Walk;
@@ -10,7 +11,7 @@ use ambit_base::{DVec3, EPSILON, Rgb};
 /// Tag of a hemisphere's point set; the far side's is the next.
 const HEMISPHERE: u64 = 0xa0;
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// As [`Walk::ambient`], for materials that take a coefficient without a positive channel as none.
     pub(crate) fn positive_ambient(&mut self, ray: &mut Ray<'_>, coefficient: Rgb, shading: DVec3) {
         if coefficient.max_element() > EPSILON as f32 {
@@ -41,6 +42,9 @@ impl Walk<'_> {
             level: ray.depth,
             origin: Origin::of(ray, transmitted, coefficient.max_element().min(1.0)),
         };
+        if O::ACTIVE {
+            self.follow_hemisphere(ray, &query, coefficient);
+        }
         match self.cache.ask(self.tracer, &query) {
             Answer::Fallback(_) if self.is_endless() => self.survive(ray, coefficient, query),
             Answer::Value(v) | Answer::Fallback(v) => ray.value += coefficient * v,

@@ -15,6 +15,8 @@ use ambit_trace::Hit;
 pub(crate) struct Kinds(u16);
 
 impl Kinds {
+    /// No ray, but a place on one.
+    pub(crate) const NONE: Self = Self(0);
     pub(crate) const PRIMARY: Self = Self(1);
     pub(crate) const REFLECTED: Self = Self(2);
     pub(crate) const REFRACTED: Self = Self(4);

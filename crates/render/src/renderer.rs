@@ -4,6 +4,7 @@
 //! resolved in rounds, and everything learnt becomes visible to the next batch. The answers depend on the requests and
 //! the borders of batches, never on threads.
 
+use crate::observer::Observer;
 use crate::picture::{SourceOutline, outlines};
 use crate::prepare::{Environment, Loaded, Prepared};
 use crate::ray::{Interior, Kinds, Ray};
@@ -34,11 +35,11 @@ const SENSOR_DISTANCE: f64 = 1e-5;
 /// A scene ready to be asked for light.
 #[derive(Debug)]
 pub struct Renderer {
-    scene: Prepared,
-    options: Options,
-    cache: Cache,
-    tally: Tally,
-    works: Vec<Mutex<Work>>,
+    pub(crate) scene: Prepared,
+    pub(crate) options: Options,
+    pub(crate) cache: Cache,
+    pub(crate) tally: Tally,
+    pub(crate) works: Vec<Mutex<Work>>,
     /// Failed operations of function files that have been warned about.
     told: Vec<ambit_cal::Warning>,
     rays: u64,
@@ -87,7 +88,8 @@ impl Renderer {
         let one = |request: &Request| {
             let mut misses = Vec::new();
             let mut work = tracer.work();
-            let answer = Walk { tracer: &tracer, cache, work: &mut work, misses: &mut misses }.answer(request);
+            let answer =
+                Walk { tracer: &tracer, cache, work: &mut work, misses: &mut misses, observer: () }.answer(request);
             (answer, misses)
         };
         let shaded: Vec<(Answer, Vec<Miss<Origin>>)> = if requests.len() < PARALLEL_FROM {
@@ -116,7 +118,7 @@ impl Renderer {
     }
 
     /// Lets the next batch see what this one has counted.
-    fn settle(&mut self) -> Result<(), Error> {
+    pub(crate) fn settle(&mut self) -> Result<(), Error> {
         for work in &self.works {
             let mut work = work.lock().unwrap_or_else(PoisonError::into_inner);
             self.tally.take(&mut work.tally);
@@ -126,7 +128,7 @@ impl Renderer {
     }
 
     /// Tells what function files had no values for: each failed operation and each modifier once.
-    fn complain(&mut self, notify: &dyn Notify) {
+    pub(crate) fn complain(&mut self, notify: &dyn Notify) {
         for work in &self.works {
             let mut work = work.lock().unwrap_or_else(PoisonError::into_inner);
             for warning in work.cal.drain_warnings() {
@@ -173,14 +175,40 @@ impl Tracer<'_> {
         Interior { extinction: m.extinction, albedo: m.albedo, eccentricity: m.eccentricity as f32, sources: 0 }
     }
 
+    /// What is known of a ray that has been followed; its hit only if that was `met`.
+    pub(crate) fn describe(&self, ray: &Ray<'_>, met: bool) -> Answer {
+        let mut answer = Answer::nothing(ray.origin, ray.direction);
+        answer.value = ray.value;
+        answer.mirrored = ray.mirrored;
+        answer.length = ray.effective_length();
+        answer.mirrored_length = ray.mirrored_length;
+        answer.unmirrored_length = ray.unmirrored_length;
+        answer.first_length = ray.distance;
+        answer.point = ray.point;
+        answer.weight = ray.weight;
+        answer.coefficient = ray.attenuation();
+        if let Some(hit) = &ray.hit
+            && met
+        {
+            // What lets rays pass, and the back of a light, turn no normal.
+            answer.normal = if ray.normal == DVec3::ZERO { hit.normal } else { ray.normal };
+            answer.geometric_normal = hit.normal;
+            answer.uv = hit.uv;
+            answer.surface = hit.object;
+            answer.modifier = hit.modifier;
+            answer.material = self.scene.modifiers.shader(hit.modifier);
+        }
+        answer
+    }
+
     fn stream(&self, index: u32) -> Stream {
         let key = hash_bits(&[self.options.seed, 0x0a11]);
         if self.options.uncorrelated { Stream::uncorrelated(index, key) } else { Stream::new(index, key) }
     }
 }
 
-impl Walk<'_> {
-    fn answer(&mut self, request: &Request) -> Answer {
+impl<O: Observer> Walk<'_, O> {
+    pub(crate) fn answer(&mut self, request: &Request) -> Answer {
         let tracer = self.tracer;
         let direction = request.direction.normalize_or_zero();
         if direction == DVec3::ZERO || !request.origin.is_finite() {
@@ -216,28 +244,8 @@ impl Walk<'_> {
                 ray = ray_to_source;
             }
         }
-        let mut answer = Answer::nothing(ray.origin, ray.direction);
-        answer.value = ray.value + self.endless(0);
-        answer.mirrored = ray.mirrored;
-        answer.length = ray.effective_length();
-        answer.mirrored_length = ray.mirrored_length;
-        answer.unmirrored_length = ray.unmirrored_length;
-        answer.first_length = ray.distance;
-        answer.point = ray.point;
-        answer.weight = ray.weight;
-        answer.coefficient = ray.attenuation();
-        if let Some(hit) = &ray.hit
-            && request.aim != Aim::Irradiance
-        {
-            // What lets rays pass, and the back of a light, turn no normal.
-            answer.normal = if ray.normal == DVec3::ZERO { hit.normal } else { ray.normal };
-            answer.geometric_normal = hit.normal;
-            answer.uv = hit.uv;
-            answer.surface = hit.object;
-            answer.modifier = hit.modifier;
-            answer.material = tracer.scene.modifiers.shader(hit.modifier);
-        }
-        answer
+        let value = ray.value + self.endless(0);
+        Answer { value, ..tracer.describe(&ray, request.aim != Aim::Irradiance) }
     }
 
     /// Finds the nearest surface and shades nothing.
@@ -260,7 +268,7 @@ impl Walk<'_> {
 
 impl Answer {
     /// Keeps what is not a number, or infinite, out of pictures and tables.
-    fn make_finite(&mut self) {
+    pub(crate) fn make_finite(&mut self) {
         for colour in [&mut self.value, &mut self.mirrored] {
             if !colour.is_finite() {
                 *colour = Rgb::ZERO;

@@ -3,13 +3,14 @@
 
 use crate::Error;
 use crate::materials::{Facing, Finish};
+use crate::observer::Observer;
 use crate::prepare::Node;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{DVec3, Rgb};
 use ambit_scene::{Kind, ObjectId, VOID};
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// Shades a ray at its hit; false if it goes on as if nothing were there.
     pub(crate) fn shade(&mut self, ray: &mut Ray<'_>) -> bool {
         let (modifier, tilt) = ray.hit.as_ref().map_or((VOID, DVec3::ZERO), |h| (h.modifier, h.tilt));
@@ -51,7 +52,7 @@ impl Walk<'_> {
             }
             id = next;
         }
-        if ray.parent.is_none() && finish.tilt != DVec3::ZERO {
+        if (O::ACTIVE || ray.parent.is_none()) && finish.tilt != DVec3::ZERO {
             ray.normal = Facing::of(ray, finish.tilt, false).normal;
         }
         false

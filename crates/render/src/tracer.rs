@@ -64,6 +64,47 @@ impl Origin {
 }
 
 impl Tracer<'_> {
+    /// A ray that is sent to answer a question to the cache; the limits have not been applied.
+    #[expect(clippy::inline_always, reason = "a ray is large: built in place it is not copied")]
+    #[inline(always)]
+    pub(crate) fn hemisphere_ray(
+        &self,
+        query: &Query<Origin>,
+        SampleRay { direction, weight, stream }: SampleRay,
+    ) -> Ray<'static> {
+        let mut ray = query.origin.go_on(query.position, direction, stream);
+        ray.level += i32::from(!query.origin.transmitted);
+        ray.depth = query.level + 1;
+        let actual = self.options.ambient.systems.actual_weights;
+        ray.weight = query.weight * if actual { query.origin.reflectance } else { weight };
+        ray
+    }
+
+    /// As [`Sampler::sample`].
+    #[expect(clippy::inline_always, reason = "what it holds is large and on the path of every ray")]
+    #[inline(always)]
+    pub(crate) fn follow(
+        &self,
+        work: &mut Work,
+        cache: &Cache,
+        query: &Query<Origin>,
+        sample: SampleRay,
+        misses: &mut Vec<Miss<Origin>>,
+    ) -> Option<Sample> {
+        let mut ray = self.hemisphere_ray(query, sample);
+        match ray.fate(true, &self.options.limits) {
+            Fate::Alive => {}
+            // A path that Russian roulette ends brings nothing, and that is its fair share.
+            Fate::Unlucky => return Some(Sample { radiance: Rgb::ZERO, distance: FAR }),
+            Fate::Refused => return None,
+        }
+        let first = misses.len();
+        let mut walk = Walk { tracer: self, cache, work, misses, observer: () };
+        walk.evaluate(&mut ray);
+        let rest = walk.endless(first);
+        Some(Sample { radiance: ray.value * ray.coefficient + rest, distance: ray.effective_length() })
+    }
+
     /// This thread's scratch memory. The lock is never waited for: each thread of the pool has its own, and a thread
     /// outside the pool works alone.
     pub(crate) fn work(&self) -> MutexGuard<'_, Work> {
@@ -88,25 +129,10 @@ impl Sampler for Tracer<'_> {
         work: &mut MutexGuard<'_, Work>,
         cache: &Cache,
         query: &Query<Origin>,
-        SampleRay { direction, weight, stream }: SampleRay,
+        sample: SampleRay,
         misses: &mut Vec<Miss<Origin>>,
     ) -> Option<Sample> {
-        let mut ray = query.origin.go_on(query.position, direction, stream);
-        ray.level += i32::from(!query.origin.transmitted);
-        ray.depth = query.level + 1;
-        let actual = self.options.ambient.systems.actual_weights;
-        ray.weight = query.weight * if actual { query.origin.reflectance } else { weight };
-        match ray.fate(true, &self.options.limits) {
-            Fate::Alive => {}
-            // A path that Russian roulette ends brings nothing, and that is its fair share.
-            Fate::Unlucky => return Some(Sample { radiance: Rgb::ZERO, distance: FAR }),
-            Fate::Refused => return None,
-        }
-        let first = misses.len();
-        let mut walk = Walk { tracer: self, cache, work, misses };
-        walk.evaluate(&mut ray);
-        let rest = walk.endless(first);
-        Some(Sample { radiance: ray.value * ray.coefficient + rest, distance: ray.effective_length() })
+        self.follow(work, cache, query, sample, misses)
     }
 
     fn occluded(&self, query: &Query<Origin>, from: DVec3, direction: DVec3) -> bool {

@@ -6,6 +6,7 @@
 //! Paths are followed one after the other, not one inside the other: their length is not limited by the stack.
 
 use crate::Error;
+use crate::observer::Observer;
 use crate::ray::Ray;
 use crate::tracer::Origin;
 use crate::walk::Walk;
@@ -22,7 +23,7 @@ const CROWD: usize = 10_000;
 /// Tag of the number that decides; the far side's is the next.
 const SURVIVAL: u64 = 0xe0;
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// True if paths go on after the last bounce. `-ab 0` asks for no bounces, and `-ad 0` for none of any kind.
     pub(crate) fn is_endless(&self) -> bool {
         let a = &self.tracer.options.ambient;

@@ -1,6 +1,7 @@
 //! Following rays: the nearest hit, what passes through, the medium on the way, and the distant sources.
 
 use crate::Error;
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray, transmittance};
 use crate::tracer::{Origin, Tracer};
 use crate::work::Work;
@@ -12,23 +13,29 @@ use ambit_trace::Hit;
 ///
 /// Everything read is frozen while a batch is computed. Diffuse questions that the cache cannot answer are pushed on
 /// `misses` with their coefficients; the item's value lacks them until they are resolved.
-pub(crate) struct Walk<'s> {
+pub(crate) struct Walk<'s, O = ()> {
     pub(crate) tracer: &'s Tracer<'s>,
     pub(crate) cache: &'s Cache,
     pub(crate) work: &'s mut Work,
     pub(crate) misses: &'s mut Vec<Miss<Origin>>,
+    /// Sees the rays; `()` where nobody wants to.
+    pub(crate) observer: O,
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// Traces a ray and shades what it meets.
     pub(crate) fn evaluate(&mut self, ray: &mut Ray<'_>) {
         self.work.rays += 1;
         let query = ambit_trace::Ray { origin: ray.origin, direction: ray.direction, limit: ray.limit };
         match self.tracer.scene.world.nearest(&query) {
             Some(hit) => self.shade_hit(ray, hit),
-            None if ray.limit < FAR => {}
+            None if ray.limit < FAR => {
+                ray.point = ray.origin + ray.direction * ray.limit;
+                self.observer.finished(self.tracer, ray);
+            }
             None => {
                 self.distant(ray);
+                self.observer.finished(self.tracer, ray);
                 self.medium(ray);
             }
         }
@@ -45,6 +52,7 @@ impl Walk<'_> {
         if hidden || !self.shade(ray) {
             self.pass_through(ray);
         }
+        self.observer.finished(self.tracer, ray);
         self.medium(ray);
     }
 

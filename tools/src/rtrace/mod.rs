@@ -4,6 +4,7 @@ mod header;
 mod input;
 mod record;
 mod stream;
+mod tree;
 
 use crate::colour::Conversion;
 use crate::light::Scene;
@@ -18,6 +19,7 @@ use record::RecordWriter;
 use std::ffi::OsString;
 use std::io::{BufReader, Write, stdin, stdout};
 use std::process::ExitCode;
+use tree::TreeWriter;
 
 const ABOUT: About = About {
     name: "rtrace",
@@ -70,7 +72,7 @@ impl Job {
         let spec = OutputSpec::parse(&options.fields)?;
         let conversion = Conversion::new(options.common.output, false);
         if options.format == OutputFormat::Colour {
-            if !matches!(spec.fields[..], [Field::Value | Field::Mirrored | Field::Unmirrored]) {
+            if spec.tree.is_some() || !matches!(spec.fields[..], [Field::Value | Field::Mirrored | Field::Unmirrored]) {
                 return Err(Failure::user("color format only with -ov, -or, -ox").into());
             }
             if conversion.channels() != 3 {
@@ -82,14 +84,24 @@ impl Job {
             return Err(Failure::user("-I+ and -i+ options require some value output").into());
         }
         let ambient = &options.rendering.options.ambient;
-        for (field, letter) in [(Field::Contribution, 'V'), (Field::Coefficient, 'W')] {
-            if spec.has(&[field]) && ambient.bounces > 0 && (ambient.accuracy > 0.0 || ambient.super_samples > 0) {
-                session.messages.warn(&format!("-ot{letter} accuracy depends on -aa 0 -as 0"));
+        let coarse = ambient.bounces > 0 && (ambient.accuracy > 0.0 || ambient.super_samples > 0);
+        let contributions = |fields: &[Field], traced: bool| {
+            for field in fields {
+                let letter = match field {
+                    Field::Contribution => 'V',
+                    Field::Coefficient => 'W',
+                    _ => continue,
+                };
+                if coarse {
+                    session.messages.warn(&format!("-ot{letter} accuracy depends on -aa 0 -as 0"));
+                }
+                if !traced {
+                    session.messages.warn("-oVW options require trace mode");
+                }
             }
-        }
-        if spec.has(&[Field::Contribution, Field::Coefficient]) {
-            session.messages.warn("-oVW options require trace mode");
-        }
+        };
+        contributions(&spec.fields, false);
+        contributions(spec.tree.as_ref().map_or(&[], |t| &t.fields), true);
         let parts = [Field::Mirrored, Field::MirroredLength, Field::Unmirrored, Field::UnmirroredLength];
         if irradiance && spec.has(&parts) {
             session.messages.warn("-orRxX options incompatible with -I+ and -i+");
@@ -110,9 +122,11 @@ impl Job {
         }
         let written = out.write_all(&head).and_then(|()| if options.width > 0 { out.flush() } else { Ok(()) });
         written.map_err(|e| Stop::writing("write error", &e))?;
-        let records = RecordWriter::new(&self.spec, self.conversion, options.format);
+        let records = RecordWriter::new(&self.spec.fields, self.conversion, options.format);
+        let tree = self.spec.tree.as_ref().map(|t| TreeWriter::new(t, self.conversion, options));
         let reader = RayReader::new(BufReader::with_capacity(1 << 16, stdin().lock()), options.input);
-        let complete = stream::Stream::new(options, &self.spec).run(reader, &records, scene, &mut out)?;
+        let complete =
+            stream::Stream::new(options, &self.spec).run(reader, &records, tree.as_ref(), scene, &mut out)?;
         if !complete {
             session.messages.warn("unexpected EOF on input");
         }

@@ -1,43 +1,48 @@
 //! Records: the fields of an answer in the format that is wanted.
 
 use crate::colour::Conversion;
-use crate::light::Light;
 use crate::quantity::push_exponent;
 use ambit_base::{DVec3, FAR, Rgb};
-use ambit_cli::{Field, OutputFormat, OutputSpec};
+use ambit_cli::{Field, OutputFormat};
 use ambit_file::encode_pixel;
-use ambit_render::Answer;
+use ambit_render::{Answer, Names};
 use ambit_scene::VOID;
 
 /// Writes records.
 pub(crate) struct RecordWriter<'a> {
-    spec: &'a OutputSpec,
+    fields: &'a [Field],
     conversion: Conversion,
     format: OutputFormat,
 }
 
 impl<'a> RecordWriter<'a> {
     /// Records of these fields.
-    pub(crate) fn new(spec: &'a OutputSpec, conversion: Conversion, format: OutputFormat) -> Self {
-        Self { spec, conversion, format }
+    pub(crate) fn new(fields: &'a [Field], conversion: Conversion, format: OutputFormat) -> Self {
+        Self { fields, conversion, format }
     }
 
     /// Appends the record of an answer.
-    pub(crate) fn write(&self, out: &mut Vec<u8>, answer: &Answer, light: &dyn Light) {
+    pub(crate) fn write(&self, out: &mut Vec<u8>, answer: &Answer, names: Names<'_>) {
+        self.write_with(out, answer, answer.value, names);
+    }
+
+    /// As [`Self::write`], for a ray that brings `contribution` to the primary ray.
+    pub(crate) fn write_with(&self, out: &mut Vec<u8>, answer: &Answer, contribution: Rgb, names: Names<'_>) {
         // A ray that met nothing has no names; a surface without a modifier has a void one.
         let name = |out: &mut Vec<u8>, id| {
             if answer.surface == VOID {
                 out.push(b'*');
             } else {
-                out.extend_from_slice(light.name(id).as_bytes());
+                out.extend_from_slice(names(id).as_bytes());
             }
             out.push(b'\t');
         };
-        for field in &self.spec.fields {
+        for field in self.fields {
             match field {
                 Field::Origin => self.vector(out, answer.origin),
                 Field::Direction => self.vector(out, answer.direction),
-                Field::Value | Field::Contribution => self.colour(out, answer.value),
+                Field::Value => self.colour(out, answer.value),
+                Field::Contribution => self.colour(out, contribution),
                 Field::Weight => self.number(out, f64::from(answer.weight)),
                 Field::Coefficient => self.colour(out, answer.coefficient),
                 Field::Length => self.number(out, answer.length),
@@ -56,14 +61,14 @@ impl<'a> RecordWriter<'a> {
                 Field::Tilde => out.extend_from_slice(b"~\t"),
             }
         }
-        if self.format == OutputFormat::Ascii && !self.spec.fields.is_empty() {
+        if self.format == OutputFormat::Ascii && !self.fields.is_empty() {
             out.push(b'\n');
         }
     }
 
     /// The record that stands for a ray without direction: black and nowhere, but for the ray before it.
-    pub(crate) fn write_bogus(&self, out: &mut Vec<u8>, (origin, direction): (DVec3, DVec3), light: &dyn Light) {
-        self.write(out, &Answer::nothing(origin, direction), light);
+    pub(crate) fn write_bogus(&self, out: &mut Vec<u8>, (origin, direction): (DVec3, DVec3), names: Names<'_>) {
+        self.write(out, &Answer::nothing(origin, direction), names);
     }
 
     fn vector(&self, out: &mut Vec<u8>, v: DVec3) {

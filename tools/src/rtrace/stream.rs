@@ -5,12 +5,13 @@
 
 use super::input::RayReader;
 use super::record::RecordWriter;
+use super::tree::TreeWriter;
 use crate::light::Light;
 use crate::session::Stop;
 use ambit_base::{DVec3, FAR};
 use ambit_cli::{OutputSpec, RayOptions};
 use ambit_render::picture::Batches;
-use ambit_render::{Aim, Request};
+use ambit_render::{Aim, Answer, Request};
 use std::io::{BufRead, Write};
 
 /// Bytes that are collected before they are written, unless they must be flushed.
@@ -46,6 +47,7 @@ impl Stream {
         &self,
         mut rays: RayReader<R>,
         records: &RecordWriter<'_>,
+        tree: Option<&TreeWriter<'_>>,
         light: &mut dyn Light,
         out: &mut dyn Write,
     ) -> Result<bool, Stop> {
@@ -81,16 +83,24 @@ impl Stream {
                 requests.push(Request { origin, direction, limit, index, aim: self.aim });
                 index = index.wrapping_add(1);
             }
-            for answer in light.trace(&requests)? {
-                records.write(&mut bytes, &answer, light);
-                before = (answer.origin, answer.direction);
+            if let Some(tree) = tree {
+                for request in &requests {
+                    let answer = show(request, tree, &mut bytes, light, out)?;
+                    records.write(&mut bytes, &answer, &|id| light.name(id));
+                    before = (answer.origin, answer.direction);
+                }
+            } else {
+                for answer in light.trace(&requests)? {
+                    records.write(&mut bytes, &answer, &|id| light.name(id));
+                    before = (answer.origin, answer.direction);
+                }
             }
             made += requests.len() as u64;
             unflushed += requests.len() as u64;
             requests.clear();
             let mut flush = self.interval > 0 && unflushed >= self.interval;
             if zero {
-                records.write_bogus(&mut bytes, before, light);
+                records.write_bogus(&mut bytes, before, &|id| light.name(id));
                 made += 1;
                 // With nothing pending it waits for the next flush.
                 flush |= unflushed > 0;
@@ -111,13 +121,33 @@ impl Stream {
     }
 }
 
+/// Answers one ray and writes its tree, which may be larger than memory.
+fn show(
+    request: &Request,
+    tree: &TreeWriter<'_>,
+    bytes: &mut Vec<u8>,
+    light: &mut dyn Light,
+    out: &mut dyn Write,
+) -> Result<Answer, Stop> {
+    let mut written = Ok(());
+    let answer = light.trace_tree(request, &mut |ray, names| {
+        tree.write(bytes, ray, names);
+        if bytes.len() >= BUFFER && written.is_ok() {
+            written = out.write_all(bytes);
+            bytes.clear();
+        }
+    })?;
+    written.map_err(|e| Stop::writing("write error", &e))?;
+    Ok(answer)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::colour::Conversion;
     use ambit_base::Rgb;
     use ambit_cli::{InputFormat, Output, OutputFormat};
-    use ambit_render::Answer;
+    use ambit_render::{Names, TreeRay};
     use ambit_scene::ObjectId;
     use std::borrow::Cow;
     use std::cell::RefCell;
@@ -137,6 +167,10 @@ mod tests {
                 a
             };
             Ok(requests.iter().map(answer).collect())
+        }
+
+        fn trace_tree(&mut self, _: &Request, _: &mut dyn FnMut(&TreeRay, Names<'_>)) -> Result<Answer, Stop> {
+            unreachable!("these tests ask for no trees")
         }
 
         fn name(&self, _: ObjectId) -> Cow<'_, str> {
@@ -166,11 +200,12 @@ mod tests {
         options.common.output = Output::Average;
         set(&mut options);
         let spec = OutputSpec::parse(&options.fields).unwrap();
-        let records = RecordWriter::new(&spec, Conversion::new(options.common.output, false), options.format);
+        let records = RecordWriter::new(&spec.fields, Conversion::new(options.common.output, false), options.format);
         let log = Rc::new(RefCell::new(Vec::new()));
         let mut out = Watched(Rc::clone(&log), Vec::new(), 0);
         let rays = RayReader::new(input.as_bytes(), InputFormat::Ascii);
-        let complete = Stream::new(&options, &spec).run(rays, &records, &mut Plain(Rc::clone(&log)), &mut out).unwrap();
+        let complete =
+            Stream::new(&options, &spec).run(rays, &records, None, &mut Plain(Rc::clone(&log)), &mut out).unwrap();
         let values = out.1.chunks_exact(4).map(|b| f32::from_ne_bytes(b.try_into().unwrap())).collect();
         let log = log.borrow().clone();
         (log, values, complete)

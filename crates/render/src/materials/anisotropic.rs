@@ -5,6 +5,7 @@ use super::normal::{LEAST_COSINE, crossing};
 use super::rough::Facets;
 use super::{Facing, Finish, NormalKind};
 use crate::Error;
+use crate::observer::Observer;
 use crate::patterns::{Compiler, Functions};
 use crate::ray::Ray;
 use crate::walk::Walk;
@@ -49,7 +50,7 @@ impl Anisotropic {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn anisotropic(&mut self, ray: &mut Ray<'_>, m: &Anisotropic, finish: Finish) -> bool {
         if ray.is_shadow() {
             return true;

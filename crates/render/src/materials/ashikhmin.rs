@@ -5,6 +5,7 @@ use super::normal::LEAST_COSINE;
 use super::rough::tangents;
 use super::{Facing, Finish};
 use crate::Error;
+use crate::observer::Observer;
 use crate::patterns::{Compiler, Functions};
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
@@ -91,7 +92,7 @@ impl Lobe {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn ashikhmin(&mut self, ray: &mut Ray<'_>, m: &Ashikhmin, finish: Finish) -> bool {
         if ray.is_shadow() {
             return true;

@@ -3,6 +3,7 @@
 
 use super::{Facing, Finish};
 use crate::Error;
+use crate::observer::Observer;
 use crate::patterns::{Compiler, Functions, Recipe};
 use crate::ray::Ray;
 use crate::walk::Walk;
@@ -59,7 +60,7 @@ impl Brtd {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn brtd(&mut self, ray: &mut Ray<'_>, m: &Brtd, finish: Finish) -> bool {
         if ray.is_shadow() && !m.transmits {
             return true;

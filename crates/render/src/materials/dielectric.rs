@@ -1,6 +1,7 @@
 //! dielectric and interface: refraction and reflection at the boundary of solids, with absorption along the way.
 
 use super::{Facing, Finish};
+use crate::observer::Observer;
 use crate::ray::{Interior, Kinds, Ray};
 use crate::walk::Walk;
 use ambit_base::{EPSILON, Rgb};
@@ -32,7 +33,7 @@ fn absorption(transmission: Rgb) -> Interior {
     Interior { extinction, ..Interior::VACUUM }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn dielectric(&mut self, ray: &mut Ray<'_>, m: &Dielectric, finish: Finish) -> bool {
         let facing = Facing::of(ray, finish.tilt, true);
         let outside = match m.outside {

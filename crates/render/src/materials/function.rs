@@ -4,6 +4,7 @@
 use super::program::put;
 use super::{Finish, NormalKind};
 use crate::Error;
+use crate::observer::Observer;
 use crate::patterns::{Compiler, Functions, Recipe};
 use crate::ray::Ray;
 use crate::walk::Walk;
@@ -69,7 +70,7 @@ impl FunctionMaterial {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn function_material(&mut self, ray: &mut Ray<'_>, m: &FunctionMaterial, finish: Finish) -> bool {
         if ray.is_shadow() {
             return true;

@@ -1,6 +1,7 @@
 //! glass: a thin pane with all internal reflections summed.
 
 use super::{Facing, Finish};
+use crate::observer::Observer;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{DVec3, EPSILON, Rgb};
@@ -45,7 +46,7 @@ impl Glass {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn glass(&mut self, ray: &mut Ray<'_>, m: &Glass, finish: Finish) -> bool {
         if ray.cosine() <= 0.0 && !self.tracer.options.back_visible {
             return false;

@@ -2,6 +2,7 @@
 //! lengths of the path. Also the test whether a hit from behind counts.
 
 use super::{Facing, mirror_direction};
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
 use ambit_base::{DVec3, Rgb};
@@ -10,7 +11,7 @@ use ambit_base::{DVec3, Rgb};
 const REFLECTED: u64 = 2;
 const PASSED: u64 = 3;
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// The hit's normals turned to the viewer, noted in the ray; None if it comes from behind and `-bv` is off.
     pub(super) fn visible_side(&self, ray: &mut Ray<'_>, tilt: DVec3) -> Option<Facing> {
         if ray.cosine() < 0.0 && !self.tracer.options.back_visible {

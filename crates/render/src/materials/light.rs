@@ -2,6 +2,7 @@
 
 use super::Finish;
 use super::mirror::Alternate;
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::sources::Spot;
 use crate::walk::Walk;
@@ -37,7 +38,7 @@ impl Light {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn light(&mut self, ray: &mut Ray<'_>, m: &Light, finish: Finish) -> bool {
         let front = ray.cosine() > 0.0;
         let indirect = ray.lineage.meets(Kinds::INDIRECT) && !ray.is_shadow();

@@ -1,6 +1,7 @@
 //! mirror: a perfect mirror that relays light sources as virtual ones.
 
 use super::{Facing, Finish, mirror_direction};
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
 use ambit_base::Rgb;
@@ -23,7 +24,7 @@ pub(crate) enum Alternate {
     Modifier(ObjectId),
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn mirror(&mut self, ray: &mut Ray<'_>, m: &Mirror, finish: Finish) -> bool {
         let relayed = self.relays_target(ray);
         if let (Some(alternate), None) = (m.alternate, relayed) {

@@ -2,6 +2,7 @@
 
 use super::Finish;
 use crate::Error;
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray, SourceSet};
 use crate::walk::Walk;
 use ambit_base::Rgb;
@@ -40,7 +41,7 @@ impl Mist {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn mist(&mut self, ray: &mut Ray<'_>, m: &Mist, finish: Finish) -> bool {
         ray.normal = ray.hit.as_ref().map_or(-ray.direction, |h| h.normal);
         let extinction = m.extinction * finish.pattern;

@@ -32,6 +32,7 @@ pub(crate) use prism::Prism;
 pub(crate) use wgmd::Wgmd;
 
 use crate::antimatter::Antimatter;
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
 use ambit_base::{DVec3, EPSILON, Rgb};
@@ -120,7 +121,7 @@ impl Material {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// Shades a ray at its hit; false if the material lets it pass unchanged. `bare` is what had been gathered before the
     /// material's own modifiers.
     pub(crate) fn material(&mut self, ray: &mut Ray<'_>, material: &Material, finish: Finish, bare: &Finish) -> bool {

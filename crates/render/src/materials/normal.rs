@@ -3,6 +3,7 @@
 
 use super::rough::Facets;
 use super::{Facing, Finish};
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
 use ambit_base::{DVec3, EPSILON, Rgb};
@@ -93,7 +94,7 @@ impl Normal {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn normal(&mut self, ray: &mut Ray<'_>, m: &Normal, finish: Finish) -> bool {
         if ray.is_shadow() && m.kind != NormalKind::Trans {
             return true;

@@ -3,6 +3,7 @@
 
 use super::program::{Channels, put};
 use crate::Error;
+use crate::observer::Observer;
 use crate::patterns::{Compiler, Functions, fill};
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
@@ -60,7 +61,7 @@ fn split([k, x, y, z]: [f64; BRANCH]) -> Option<(f64, DVec3)> {
     (k > EPSILON).then_some((k, direction))
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn prism(&mut self, ray: &mut Ray<'_>, m: &Prism) -> bool {
         ray.normal = ray.facing_normal();
         let image = self.relaying(ray);

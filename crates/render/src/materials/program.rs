@@ -2,6 +2,7 @@
 //! the light sought, and lobes are functions of the direction to the light.
 
 use super::Facing;
+use crate::observer::Observer;
 use crate::patterns::Functions;
 use crate::ray::Ray;
 use crate::walk::Walk;
@@ -11,7 +12,7 @@ use ambit_cal::{CHANNELS, Channel, Fault, Flag, Inputs, Pass};
 /// Values of all channels at one hit.
 pub(super) type Channels = [f64; CHANNELS];
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// The channels of a hit with those that only materials provide.
     pub(super) fn material_channels(
         &self,

@@ -5,6 +5,7 @@ use super::normal::{FRESNEL_FROM, crossing, fresnel};
 use super::rough::Facets;
 use super::{Facing, Finish};
 use crate::Error;
+use crate::observer::Observer;
 use crate::patterns::{Compiler, Functions};
 use crate::ray::Ray;
 use crate::walk::Walk;
@@ -89,7 +90,7 @@ struct Lobe {
     facets: Option<Facets>,
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn wgmd(&mut self, ray: &mut Ray<'_>, m: &Wgmd, finish: Finish, bare: &Finish) -> bool {
         if ray.is_shadow() && !m.transmits {
             return true;

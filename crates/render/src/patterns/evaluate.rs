@@ -3,6 +3,7 @@
 
 use super::compiler::Functions;
 use crate::Error;
+use crate::observer::Observer;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_cal::{Fault, Flag, Inputs, Pass};
@@ -28,7 +29,7 @@ pub(crate) fn check(pass: &Pass<'_>) -> Result<(), Failure> {
     if pass.flag() == Flag::Clear { Ok(()) } else { Err(Failure::NoValue) }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// Evaluates programs of `functions` at the hit of `ray` as `f` says; None where there is no value.
     pub(crate) fn evaluate_with<R>(
         &mut self,

@@ -2,6 +2,7 @@
 
 use super::compiler::Compiler;
 use crate::Error;
+use crate::observer::Observer;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{DVec3, Transform};
@@ -47,7 +48,7 @@ impl Compiler<'_> {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// True if the hit lies inside a glyph.
     pub(crate) fn lettered(&self, ray: &Ray<'_>, text: &TextBlock) -> bool {
         text.covers(self.function_frame(ray, &Transform::default()).point_back(ray.point))

@@ -4,6 +4,7 @@ use super::compiler::{Compiler, Functions, Recipe};
 use super::evaluate::{Failure, check, finite};
 use super::image::Image;
 use crate::Error;
+use crate::observer::Observer;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_cal::Pass;
@@ -160,7 +161,7 @@ pub(crate) fn point(
     Ok(point)
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// Results of the functions of a lookup, as many as it has; None where they have no value.
     pub(crate) fn look_up(&mut self, ray: &Ray<'_>, lookup: &Lookup) -> Option<[f64; 3]> {
         self.evaluate_with(ray, &lookup.functions, |pass| lookup.evaluate(pass))

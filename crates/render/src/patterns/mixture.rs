@@ -4,6 +4,7 @@ use super::compiler::{Compiler, Functions};
 use super::lookup::{Layout, Lookup};
 use crate::Error;
 use crate::materials::{Facing, Finish};
+use crate::observer::Observer;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{Colour, EPSILON};
@@ -56,7 +57,7 @@ impl Mixture {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// Applies a mixture. Where a side has a material the hit is shaded and the answer is whether it was; otherwise
     /// the sides' patterns and textures are blended into `finish` and there is no answer: the chain goes on.
     pub(crate) fn mix(

@@ -5,6 +5,7 @@ use super::lookup::{Layout, Lookup};
 use super::spectral::{self, Spectral};
 use crate::Error;
 use crate::materials::Finish;
+use crate::observer::Observer;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::Rgb;
@@ -68,7 +69,7 @@ impl Pattern {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// Multiplies the colour by a pattern; one that has no value here leaves it alone.
     pub(crate) fn apply_pattern(&mut self, ray: &Ray<'_>, pattern: &Pattern, finish: &mut Finish) {
         let value = match pattern {

@@ -1,12 +1,13 @@
 //! What a function file sees of a hit: the channels, in the coordinates that the function is written in.
 
 use super::compiler::Functions;
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
 use ambit_base::{DVec3, Transform};
 use ambit_cal::{CHANNELS, Channel, ChannelSet};
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// The transform from a function's coordinates to the world: the modifier's own, then the instance's.
     pub(crate) fn function_frame(&self, ray: &Ray<'_>, placement: &Transform) -> Transform {
         match ray.hit.as_ref().and_then(|h| h.placement) {

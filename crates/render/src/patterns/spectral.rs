@@ -10,6 +10,7 @@ use super::spectral_image::SpectralImage;
 use super::spectrum::{Folding, MAX_BANDS};
 use crate::Error;
 use crate::ray::Ray;
+use crate::observer::Observer;
 use crate::walk::Walk;
 use ambit_base::Rgb;
 use ambit_cal::Pass;
@@ -153,7 +154,7 @@ impl Spectral {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// RGB of a spectral pattern; None where it has no value.
     pub(crate) fn spectral(&mut self, ray: &Ray<'_>, spectral: &Spectral) -> Option<Rgb> {
         self.evaluate_with(ray, &spectral.functions, |pass| spectral.evaluate(pass))

@@ -4,6 +4,7 @@ use super::compiler::{Compiler, Functions};
 use super::lookup::{Layout, Lookup};
 use crate::Error;
 use crate::materials::Finish;
+use crate::observer::Observer;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::DVec3;
@@ -29,7 +30,7 @@ impl Texture {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// Adds a texture's tilt, carried to world coordinates at its length.
     pub(crate) fn apply_texture(&mut self, ray: &Ray<'_>, texture: &Texture, finish: &mut Finish) {
         let (tilt, functions) = match texture {

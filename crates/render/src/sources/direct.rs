@@ -2,6 +2,7 @@
 //! order until the rest cannot matter, and estimate the untested rest from each source's record so far
 //! (Ward 1991, *Adaptive Shadow Testing*).
 
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray, transmittance};
 use crate::sources::partition::{Part, parts};
 use crate::sources::{Emitter, Source, SourceId};
@@ -32,7 +33,7 @@ pub(super) struct Sample {
 /// Above this jitter a round source that is not divided is sampled all over.
 const BENDING_JITTER: f64 = 0.7;
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// Adds to `ray.value` what all sources send to its hit point. `coefficient` gives the surface's response to a
     /// unit direction and a solid angle: BSDF × cosine × solid angle.
     pub(crate) fn direct(&mut self, ray: &mut Ray<'_>, coefficient: impl Fn(DVec3, f64) -> Rgb) {
@@ -241,7 +242,8 @@ impl Walk<'_> {
         let source = &tracer.scene.sources[candidate.source as usize];
         let direction = candidate.direction;
         // Most rays either arrive or meet something opaque: only what is neither needs a ray to shade with.
-        let plain = ray.clipped == 0 && ray.next_clipped == 0 && ray.limit >= FAR && source.image.is_none();
+        let plain =
+            !O::ACTIVE && ray.clipped == 0 && ray.next_clipped == 0 && ray.limit >= FAR && source.image.is_none();
         let mut found = None;
         if plain {
             self.work.rays += 1;
@@ -257,6 +259,10 @@ impl Walk<'_> {
         let kind = if behind { Kinds::SHADOW_TRANSMITTED } else { Kinds::SHADOW_REFLECTED };
         let (child, _) = ray.spawn(kind, direction, None, &tracer.options.limits, 0);
         let mut child = child.aimed(candidate.source);
+        if O::ACTIVE {
+            child.coefficient = candidate.coefficient;
+            child.throughput = ray.throughput * ray.attenuation() * candidate.coefficient;
+        }
         if source.image.is_some() {
             return self.shadow_by_relay(child, candidate.coefficient);
         }

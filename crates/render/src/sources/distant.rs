@@ -1,6 +1,7 @@
 //! Sources at infinity as rays see them that leave the scene, and aimed rays at their goal.
 
 use crate::materials::Finish;
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::sources::{Emitter, SourceId};
 use crate::walk::Walk;
@@ -9,7 +10,7 @@ use ambit_scene::{ObjectId, VOID};
 use ambit_trace::Hit;
 use std::f64::consts::PI;
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// Shades a ray that leaves the scene with the distant source it falls in, if any.
     pub(crate) fn distant(&mut self, ray: &mut Ray<'_>) {
         let Some(modifier) = self.meet_distant(ray) else { return };

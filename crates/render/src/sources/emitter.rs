@@ -157,6 +157,8 @@ impl Source {
 
     /// The sample point for coordinates in [−1,1]³ along the axes; a direction for distant sources. `bend` maps the
     /// square of a round source to its disc and the cube of a sphere to its ball.
+    #[expect(clippy::inline_always, reason = "it is asked for every sample, from the walks with and without observer")]
+    #[inline(always)]
     pub(crate) fn sample_point(&self, mut at: [f64; 3], bend: bool) -> DVec3 {
         if bend {
             match self.emitter {

@@ -5,8 +5,9 @@ use super::partition::parts;
 use super::{Source, SourceId};
 use crate::Error;
 use crate::materials::Material;
+use crate::observer::Observer;
 use crate::prepare::{Environment, Prepared};
-use crate::ray::{Ray, SourceSet, transmittance};
+use crate::ray::{Kinds, Ray, SourceSet, transmittance};
 use crate::walk::Walk;
 use ambit_base::{Colour, EPSILON, FAR, Rgb, mix};
 use ambit_scene::{Kind, ObjectId, Scene};
@@ -17,7 +18,7 @@ const MOST_POINTS: f64 = 16.0;
 /// Tag of the points' places.
 const PLACES: u64 = 0x3157;
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// Adds to a ray's value what the sources named by the mists around its segment send into it (single scattering):
     /// for each source one shadow ray from each of several points, one in each equal part of the segment.
     pub(crate) fn in_scatter(&mut self, ray: &mut Ray<'_>) {
@@ -41,6 +42,9 @@ impl Walk<'_> {
                 from.point = ray.origin + ray.direction * t;
                 from.distance = t;
                 from.hit = None;
+                if O::ACTIVE {
+                    from.kind = Kinds::NONE;
+                }
                 let Some(light) = self.scattered(&from, id, g, stream) else { continue };
                 let weight = (ray.distance / (4.0 * PI * points)) as f32;
                 let along = transmittance(medium.extinction, t) * medium.extinction * medium.albedo;

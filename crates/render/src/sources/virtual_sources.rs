@@ -7,6 +7,7 @@
 use super::emitter::{BALL_HALF_EDGE, Emitter, Image, Restriction, Source};
 use crate::Options;
 use crate::materials::{Alternate, Finish, Light, Material, Prism};
+use crate::observer::Observer;
 use crate::prepare::{Environment, Modifiers, Prepared};
 use crate::ray::{Interior, Kinds, Ray};
 use crate::sources::SourceId;
@@ -19,7 +20,7 @@ use std::f64::consts::PI;
 /// A flat mirror or prism that relays light.
 #[derive(Clone, Debug)]
 pub(crate) struct Relay {
-    pub(super) object: ObjectId,
+    pub(crate) object: ObjectId,
     modifier: ObjectId,
     shape: Shape,
     normal: DVec3,
@@ -289,7 +290,7 @@ impl Restriction {
     }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// The image that the ray is aimed at, if its hit is on the relay that forms it.
     pub(crate) fn relaying(&self, ray: &Ray<'_>) -> Option<Image> {
         let scene = self.tracer.scene;
@@ -367,7 +368,8 @@ impl Walk<'_> {
     pub(crate) fn shadow_by_relay(&mut self, mut child: Ray<'_>, coefficient: Rgb) -> Option<Rgb> {
         let scene = self.tracer.scene;
         let relay = child.target.and_then(|t| scene.sources[t as usize].image).map(|i| &scene.relays[i.relay as usize]);
-        if child.clipped == 0
+        if !O::ACTIVE
+            && child.clipped == 0
             && child.limit >= FAR
             && let Some(relay) = relay
         {

@@ -5,6 +5,7 @@ use super::data::Scattering;
 use super::sample::Sampling;
 use super::through::Through;
 use crate::materials::{Facing, Finish};
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
 use ambit_base::{DVec3, EPSILON, Rgb, hash_point, mix};
@@ -64,7 +65,7 @@ pub(super) struct Lit<'m> {
     pub(super) jitter: f64,
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     pub(crate) fn bsdf(&mut self, ray: &mut Ray<'_>, m: &Bsdf, finish: Finish) -> bool {
         let front = ray.cosine() > 0.0;
         let Some((thickness, up)) = self.bsdf_arguments(ray, m) else { return true };

@@ -1,6 +1,7 @@
 //! Rays that sample a lobe, and what weak lobes add to the ambient part instead.
 
 use super::material::Lit;
+use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
 use ambit_base::{Colour, DVec3, EPSILON, Rgb, mix};
@@ -27,7 +28,7 @@ fn narrowed(x: f64, sampling: f64) -> f64 {
     if (0.0..1.0).contains(&sampling) { 0.5 + sampling * (x - 0.5) } else { x }
 }
 
-impl Walk<'_> {
+impl<O: Observer> Walk<'_, O> {
     /// Samples the reflected or transmitted lobe; the total of one that is too weak to be sampled is returned for the
     /// ambient part.
     pub(super) fn sample_bsdf(&mut self, ray: &mut Ray<'_>, lit: &Lit<'_>, sampling: Sampling) -> f32 {

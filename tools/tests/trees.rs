@@ -1,0 +1,103 @@
+//! Ray trees of rtrace (`-ot`, `-oT`) against what Radiance 6.0a prints: the same lines in the same order.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use tempfile::TempDir;
+
+const CASES: &str = include_str!("recorded/trees.txt");
+
+/// Largest relative difference of two numbers; smaller ones than [`LEAST`] count as 0.
+const TOLERANCE: f64 = 2e-5;
+const LEAST: f64 = 1e-7;
+
+fn octree(folder: &TempDir, scene: &str) -> std::path::PathBuf {
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("scene.rad"), scene).unwrap();
+    let made = Command::new(env!("CARGO_BIN_EXE_oconv")).arg(path("scene.rad")).output().unwrap();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    std::fs::write(path("scene.oct"), made.stdout).unwrap();
+    path("scene.oct")
+}
+
+fn rtrace(octree: &Path, options: &str, rays: &str) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rtrace"));
+    command.args(["-h", "-u-", "-dj", "0", "-ab", "0"]).args(options.split_whitespace()).arg(octree);
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let lines = rays.replace(';', "\n") + "\n";
+    std::io::Write::write_all(&mut child.stdin.take().unwrap(), lines.as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn agree(ours: &str, theirs: &str) -> bool {
+    let same = |(a, b): (&str, &str)| match (a.parse::<f64>(), b.parse::<f64>()) {
+        (Ok(a), Ok(b)) => (a - b).abs() <= TOLERANCE * b.abs() || (a.abs() < LEAST && b.abs() < LEAST),
+        _ => a == b,
+    };
+    ours.split('\t').count() == theirs.split('\t').count() && ours.split('\t').zip(theirs.split('\t')).all(same)
+}
+
+#[test]
+fn trees_are_those_of_radiance() {
+    let mut cases = 0;
+    for case in CASES.split("\n= ").skip(1) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut lines = case.trim_end_matches('\n').split('\n');
+        let mut next = || lines.next().unwrap();
+        let (name, scene, options, rays) = (next(), next(), next(), next());
+        let theirs: Vec<&str> = lines.collect();
+        let answer = rtrace(&octree(&folder, scene), options, rays);
+        let ours: Vec<&str> = answer.lines().collect();
+        let equal = ours.len() == theirs.len() && ours.iter().zip(&theirs).all(|(a, b)| agree(a, b));
+        assert!(equal, "{name}:\nours\n{}\nrecorded\n{}", ours.join("\n"), theirs.join("\n"));
+        cases += 1;
+    }
+    assert_eq!(cases, 25);
+}
+
+/// A closed white box with a lamp in it.
+const ROOM: &str = "void light lamp 0 0 3 10 10 10 lamp sphere s 0 0 4 0 0 2 .2 void plastic white 0 0 5 .5 .5 .5 0 0 \
+    white polygon low 0 0 12 -3 -3 0 3 -3 0 3 3 0 -3 3 0 white polygon high 0 0 12 -3 -3 3 -3 3 3 3 3 3 3 -3 3 \
+    white polygon west 0 0 12 -3 -3 0 -3 3 0 -3 3 3 -3 -3 3 white polygon east 0 0 12 3 -3 0 3 -3 3 3 3 3 3 3 0 \
+    white polygon south 0 0 12 -3 -3 0 -3 -3 3 3 -3 3 3 -3 0 white polygon north 0 0 12 -3 3 0 3 3 0 3 3 3 -3 3 3";
+
+#[test]
+fn rays_of_hemispheres_are_children_of_the_ray_that_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let octree = octree(&folder, ROOM);
+    let ray = "1 1 1 0 0 -1";
+    let options = "-ab 2 -aa .2 -ad 32 -as 0 -ar 16 -w -ovtsv";
+    let answer = rtrace(&octree, options, &format!("{ray};{ray}"));
+    let depth = |line: &str| line.chars().take_while(|&c| c == '\t').count();
+    let lines: Vec<&str> = answer.lines().collect();
+    let second = lines.iter().position(|l| depth(l) == 0 && l.starts_with("low")).unwrap() + 2;
+    // The first ray finds an empty cache, the second one the first one's answer.
+    let children = lines[..second].iter().filter(|l| depth(l) == 1).count();
+    assert!((32..200).contains(&children), "{children} rays of the first hemisphere");
+    assert!(lines[..second].iter().any(|l| depth(l) == 2));
+    assert_eq!(lines.len(), second + 2, "{:?}", &lines[second..]);
+    // Parents come after their children.
+    for pair in lines.windows(2) {
+        assert!(depth(pair[1]) >= depth(pair[0]) || depth(pair[1]) + 1 == depth(pair[0]), "{pair:?}");
+    }
+    // The value does not depend on being shown, nor anything on threads.
+    let plain = rtrace(&octree, "-ab 2 -aa .2 -ad 32 -as 0 -ar 16 -ov", ray);
+    assert_eq!(plain.trim_end(), lines[1 + second - 2].trim_end());
+    assert_eq!(rtrace(&octree, &format!("{options} -n 3"), &format!("{ray};{ray}")), answer);
+}
+
+#[test]
+fn binary_lines_are_indented_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "void light lamp 0 0 3 10 10 10 lamp sphere s 0 0 4 0 0 5 .5 void plastic white 0 0 5 .5 .5 .5 0 0 white \
+                 polygon floor 0 0 12 -5 -5 0 5 -5 0 5 5 0 -5 5 0";
+    let octree = octree(&folder, scene);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rtrace"));
+    command.args(["-h", "-dj", "0", "-ab", "0", "-faf", "-osTwm"]).arg(octree);
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    std::io::Write::write_all(&mut child.stdin.take().unwrap(), b"1 0 1 0 0 -1\n").unwrap();
+    let one = 1f32.to_ne_bytes();
+    let wanted = [b"\t".as_slice(), &one, b"lamp\t", &one, b"white\tfloor\t"].concat();
+    assert_eq!(child.wait_with_output().unwrap().stdout, wanted);
+}
