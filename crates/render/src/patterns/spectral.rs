@@ -9,8 +9,8 @@ use super::pattern::Pattern;
 use super::spectral_image::SpectralImage;
 use super::spectrum::{Folding, MAX_BANDS};
 use crate::Error;
-use crate::ray::Ray;
 use crate::observer::Observer;
+use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::Rgb;
 use ambit_cal::Pass;
@@ -64,16 +64,16 @@ pub(crate) fn specfile(scene: &Scene, id: ObjectId, compiler: &mut Compiler<'_>)
 fn axis_folding(axis: &Axis) -> Folding {
     match &axis.points {
         None => Folding::even(f64::from(axis.begin), f64::from(axis.end), axis.count),
-        Some(_) => Folding::uneven(&points(axis)),
+        Some(points) => Folding::uneven(&points.iter().map(|&p| f64::from(p)).collect::<Vec<_>>()),
     }
 }
 
-fn points(axis: &Axis) -> Vec<f64> {
+/// Wavelengths at which a table is looked up along its last axis: as many as it has points, but evenly spaced whatever
+/// these are. So Radiance does.
+fn sampled_axis(axis: &Axis) -> (Folding, Box<[f64]>) {
     let (a, b) = (f64::from(axis.begin), f64::from(axis.end));
-    match &axis.points {
-        Some(points) => points.iter().map(|&p| f64::from(p)).collect(),
-        None => (0..axis.count).map(|i| a + (b - a) * (i as f64 / (axis.count - 1) as f64)).collect(),
-    }
+    let wavelengths = (0..axis.count).map(|i| a + (b - a) * (i as f64 / (axis.count - 1) as f64)).collect();
+    (Folding::even(a, b, axis.count), wavelengths)
 }
 
 impl Spectral {
@@ -96,7 +96,7 @@ impl Spectral {
                 let [_, .., last] = axes else {
                     return Err(Error::primitive(scene, id, "need at least 2-dimensional data"));
                 };
-                let (folding, wavelengths) = (axis_folding(last), points(last).into());
+                let (folding, wavelengths) = sampled_axis(last);
                 (axes.len() - 1, 2, folding, Data::Table(table, wavelengths))
             }
             _ => {
