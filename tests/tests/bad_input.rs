@@ -281,3 +281,51 @@ fn a_killed_run_leaves_whole_records() {
     assert_eq!(answer.status, Some(0), "{}", answer.err);
     assert_eq!(answer.text().lines().count(), 81);
 }
+
+/// What modifiers read besides the scene: each fault is told with the file and the line, or the part of it.
+#[test]
+fn files_of_modifiers_are_named_with_their_line() {
+    let bench = Bench::new();
+    let surface = "m polygon p 0 0 12 -9 -9 2 -9 9 2 9 9 2 9 -9 2 m polygon q 0 0 12 -9 -9 0 9 -9 0 9 9 0 -9 9 0";
+    let scenes = [
+        ("void brightfunc b 2 a f.cal 0 0 b glow m 0 0 4 1 1 1 0", "f.cal"),
+        ("void brightdata b 4 noop d.dat . Px 0 0 b glow m 0 0 4 1 1 1 0", "d.dat"),
+        ("void BSDF m 6 0 b.xml 0 1 0 . 0 0", "b.xml"),
+        ("void brighttext b 3 f.fnt . ABC 0 11 0 0 0 1 0 0 0 -1 0 1 0 b glow m 0 0 4 1 1 1 0", "f.fnt"),
+        ("void colorpict b 7 red green blue p.hdr . Px Py 0 0 b glow m 0 0 4 1 1 1 0", "p.hdr"),
+        ("void specpict b 5 noop p.hsr . Px Py 0 0 b glow m 0 0 4 1 1 1 0", "p.hsr"),
+    ];
+    let faults: [(&str, &[u8], &str); 21] = [
+        ("f.cal", b"a = 1 +;", "line 1"),
+        ("f.cal", b"\n\na = (1;", "line 3"),
+        ("f.cal", b"{ open\na = 1;", "line 2"),
+        ("f.cal", b"a = f(1);", "f`f(): undefined function"),
+        ("d.dat", b"", "d.dat:1:1"),
+        ("d.dat", b"1\n0 1 2\n1 x", "d.dat:3:3"),
+        ("d.dat", b"1\n0 1 0\n1 2", "d.dat:2:5"),
+        ("d.dat", b"2\n0 1 99999999\n0 1 99999999\n1", "d.dat:4:1"),
+        ("b.xml", b"", "b.xml:1:1"),
+        ("b.xml", b"<WindowElement>\n<Optical>\n</WindowElement>", "b.xml:3:1"),
+        ("b.xml", b"<Other/>", "WindowElement"),
+        ("f.fnt", b"65 x", "f.fnt:1:4"),
+        ("f.fnt", b"65 3\n0 0 1 1 2 999", "f.fnt:2:11"),
+        ("f.fnt", b"300 3\n0 0 1 1 2 9", "f.fnt:1:1"),
+        ("p.hdr", b"", "bad header"),
+        ("p.hdr", b"#?RADIANCE\nFORMAT=other\n\n-Y 2 +X 2\n", "FORMAT=other"),
+        ("p.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n", "resolution"),
+        ("p.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n", "scanline 0"),
+        ("p.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1000000000\n", "1000000000"),
+        ("p.hsr", b"#?RADIANCE\nFORMAT=Radiance_spectra\n\n-Y 2 +X 2\n", "NCOMP=3"),
+        ("p.hsr", b"#?RADIANCE\nNCOMP=4\nFORMAT=Radiance_spectra\n\n-Y 2 +X 2\n", "WAVELENGTH_SPLITS"),
+    ];
+    for (file, bytes, place) in faults {
+        let (scene, _) = scenes.iter().find(|s| s.1 == file).expect("each file has a scene");
+        bench.write("m.rad", format!("{scene}\n{surface}").as_bytes());
+        let octree = bench.run("oconv m.rad", b"");
+        assert_eq!(octree.status, Some(0), "{}", octree.err);
+        bench.write("m.oct", &octree.out);
+        bench.write(file, bytes);
+        let place = if foreign() { "" } else { place };
+        bench.fails("rtrace -h -w -ab 0 m.oct", 1, &[if foreign() { "" } else { file }, place]);
+    }
+}

@@ -73,6 +73,18 @@ impl Error {
     pub fn io(action: &'static str, file: &str, source: io::Error) -> Self {
         Self::Io { action, file: file.to_owned(), source }
     }
+
+    /// What is wrong, without the file's name, for messages that have it already.
+    pub fn problem(&self) -> String {
+        match self {
+            Self::Io { action, source, .. } => format!("{action}: {}", os_text(source)),
+            Self::Header { expected, .. } => format!("bad header: {expected}"),
+            Self::Format { found, expected, .. } => format!("FORMAT={found}, expected {expected}"),
+            Self::Resolution { found, .. } => format!("bad resolution string '{found}'"),
+            Self::Scanline { scanline, problem, .. } => format!("scanline {scanline}: {problem}"),
+            Self::Expand { .. } | Self::NoView { .. } => self.to_string(),
+        }
+    }
 }
 
 /// What the system says about an error, without the number that the standard library appends.

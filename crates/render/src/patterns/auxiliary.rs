@@ -78,7 +78,11 @@ impl<'e> Auxiliary<'e> {
             let bytes = open(&path, "font file", name)?;
             Ok(Font::parse(&shown, &bytes)?)
         });
-        found.map_err(|e| Error::primitive(scene, id, &format!("{e}: font load error")))
+        found.map_err(|e| {
+            let error = Error::primitive(scene, id, &format!("{e}: font load error"));
+            // What is wrong stands in the font, if there is one.
+            if e.location().line > 0 { Error::in_file(error.to_string(), e.location().clone()) } else { error }
+        })
     }
 
     /// The bytes of a text file.
@@ -108,7 +112,7 @@ impl<'e> Auxiliary<'e> {
             let (path, bytes) = fetch(environment, scene, id, "hyperspectral image", name)?;
             let shown = path.to_string_lossy();
             SpectralImage::parse(&bytes, &shown)
-                .ok_or_else(|| Error::at(scene, id, format!("bad hyperspectral image \"{shown}\"")))
+                .map_err(|e| Error::at(scene, id, format!("bad hyperspectral image \"{shown}\" ({e})")))
         })
     }
 }

@@ -35,10 +35,7 @@ impl BadImage {
     /// What to add to the message.
     pub(crate) fn detail(&self) -> String {
         match self {
-            Self::Unreadable(ambit_file::Error::Scanline { scanline, problem, .. }) => {
-                format!(" (scanline {scanline}: {problem})")
-            }
-            Self::Unreadable(_) => String::new(),
+            Self::Unreadable(e) => format!(" ({})", e.problem()),
             Self::Space => " (XYZ pixels)".to_owned(),
             Self::Empty => " (no pixels)".to_owned(),
         }

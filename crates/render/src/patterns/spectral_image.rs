@@ -20,27 +20,34 @@ pub(crate) struct SpectralImage {
 }
 
 impl SpectralImage {
-    /// Reads a picture; None if it is none.
-    pub(crate) fn parse(mut bytes: &[u8], file: &str) -> Option<Self> {
-        let header = Header::read(&mut bytes, file).ok()?;
-        let resolution = Resolution::read(&mut bytes, file).ok()?;
-        let bands = header.components() as usize;
-        let [longest, .., shortest] = header.wavelength_splits()?;
-        let usable = header.format() == Some("Radiance_spectra")
-            && (4..=MAX_BANDS).contains(&bands)
-            && longest > shortest
-            && shortest > 0.0
-            && resolution.orientation == Orientation::TEXT;
-        let (width, height) = (resolution.width as usize, resolution.height as usize);
-        let size = width.checked_mul(height)?.checked_mul(bands + 1)?;
-        if !usable || size == 0 {
-            return None;
+    /// Reads a picture. The error says what is wrong with it.
+    pub(crate) fn parse(mut bytes: &[u8], file: &str) -> Result<Self, String> {
+        let header = Header::read(&mut bytes, file).map_err(|e| e.problem())?;
+        let resolution = Resolution::read(&mut bytes, file).map_err(|e| e.problem())?;
+        if header.format() != Some("Radiance_spectra") {
+            return Err("no FORMAT=Radiance_spectra".into());
         }
-        let codes = bytes.get(..size)?.into();
+        let bands = header.components() as usize;
+        if !(4..=MAX_BANDS).contains(&bands) {
+            return Err(format!("NCOMP={bands}, expected 4 to {MAX_BANDS}"));
+        }
+        let splits = header.wavelength_splits().filter(|[longest, .., shortest]| longest > shortest && *shortest > 0.0);
+        let Some([longest, .., shortest]) = splits else {
+            return Err("no WAVELENGTH_SPLITS that fall".into());
+        };
+        if resolution.orientation != Orientation::TEXT {
+            return Err(format!("resolution string '{resolution}', expected -Y HEIGHT +X WIDTH"));
+        }
+        let (width, height) = (resolution.width as usize, resolution.height as usize);
+        let size = width.checked_mul(height).and_then(|n| n.checked_mul(bands + 1)).filter(|&n| n > 0);
+        let Some(codes) = size.and_then(|n| bytes.get(..n)) else {
+            return Err(format!("fewer than {width} x {height} pixels"));
+        };
+        let codes = codes.into();
         let aspect = header.pixel_aspect();
         let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
         let (u, v) = picture_axes(width, height, aspect);
-        Some(Self { u, v, bands, range: (longest, shortest), codes })
+        Ok(Self { u, v, bands, range: (longest, shortest), codes })
     }
 
     /// Number of bands.
@@ -114,9 +121,9 @@ mod tests {
     #[test]
     fn others_are_refused() {
         let good = picture("Radiance_spectra", "780 588 480 380");
-        assert!(SpectralImage::parse(&good[..good.len() - 1], "p").is_none());
-        assert!(SpectralImage::parse(&picture("32-bit_rle_rgbe", "780 588 480 380"), "p").is_none());
-        assert!(SpectralImage::parse(&picture("Radiance_spectra", "380 480 588 780"), "p").is_none());
-        assert!(SpectralImage::parse(b"", "p").is_none());
+        assert!(SpectralImage::parse(&good[..good.len() - 1], "p").is_err());
+        assert!(SpectralImage::parse(&picture("32-bit_rle_rgbe", "780 588 480 380"), "p").is_err());
+        assert!(SpectralImage::parse(&picture("Radiance_spectra", "380 480 588 780"), "p").is_err());
+        assert!(SpectralImage::parse(b"", "p").is_err());
     }
 }
