@@ -295,11 +295,10 @@ fn files_of_modifiers_are_named_with_their_line() {
         ("void colorpict b 7 red green blue p.hdr . Px Py 0 0 b glow m 0 0 4 1 1 1 0", "p.hdr"),
         ("void specpict b 5 noop p.hsr . Px Py 0 0 b glow m 0 0 4 1 1 1 0", "p.hsr"),
     ];
-    let faults: [(&str, &[u8], &str); 21] = [
+    let faults: [(&str, &[u8], &str); 20] = [
         ("f.cal", b"a = 1 +;", "line 1"),
         ("f.cal", b"\n\na = (1;", "line 3"),
         ("f.cal", b"{ open\na = 1;", "line 2"),
-        ("f.cal", b"a = f(1);", "f`f(): undefined function"),
         ("d.dat", b"", "d.dat:1:1"),
         ("d.dat", b"1\n0 1 2\n1 x", "d.dat:3:3"),
         ("d.dat", b"1\n0 1 0\n1 2", "d.dat:2:5"),
