@@ -1,0 +1,12 @@
+//! Ambient files.
+#![no_main]
+
+use ambit_ambient::scan;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|data: &[u8]| {
+    match scan(data, "fuzz.amb") {
+        Ok(contents) => assert!(contents.records.len() * 4 <= data.len()),
+        Err(error) => assert!(!error.is_empty()),
+    }
+});
