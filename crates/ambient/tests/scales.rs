@@ -15,10 +15,20 @@ fn a_rectangle_overhead_a_million_units_away() {
             let r = record_with(params(16384, 3), 1e3 * scale, p, move |p, d| local(p - origin, d));
             let what = format!("scale {scale}, origin {origin}");
             close(f64::from(r.value.x), 0.3103163, 0.003, &format!("{what}: F"));
-            // Radiance's law has the dimension √length, and 1/gradient limits it where lengths are small.
-            let expected = (1.19227 * scale.sqrt()).min(scale / 0.4679);
-            let tolerance = if scale < 1.0 { 0.3 } else { 0.04 };
-            close(f64::from(r.radii[0]) / expected, 1.0, tolerance, &format!("{what}: r₀"));
+            let [r0, r1] = r.radii.map(f64::from);
+            if scale >= 1.0 {
+                // Radiance's law has the dimension √length. A fourth root of a mean over 16384 cells: 4 % of it is 16 % of
+                // the curvature, whose second differences are noisy.
+                close(r0 / (1.19227 * scale.sqrt()), 1.0, 0.04, &format!("{what}: r₀"));
+            } else {
+                // Where lengths are small the gradient is the limit, r₀ = 1/|its greater component| in the axes of the
+                // ellipse, whatever these are: 1 to √2 over its length, which is known to 4 % as below.
+                let reach = r0 / scale * 0.4679_f64.hypot(0.4252);
+                assert!((0.96..=1.04 * 2f64.sqrt()).contains(&reach), "{what}: r₀ {reach} over the gradient's reach");
+                // And the light changes by itself at most over the ellipse, but for rounding to f32.
+                let change = (f64::from(r.gradient[0]) * r0).hypot(f64::from(r.gradient[1]) * r1);
+                close(change, 1.0, 1e-5, &format!("{what}: change over the ellipse"));
+            }
             if scale >= 1.0 {
                 let [gx, gy] = world(&r, r.gradient).map(|g| g * scale);
                 close(gx, -0.4679, 0.04, &format!("{what}: F_x/F"));
@@ -147,6 +157,9 @@ fn a_filled_cache_converges_with_the_number_of_records() {
     }
     let slope = slope(&points);
     println!("slope {slope}, {points:?}");
-    assert!(points[2].1 < 0.002, "{points:?}");
-    assert!(-1.3 < slope && slope < -0.7, "slope {slope}, {points:?}");
+    // The error falls as 1/number. Thirteen records at the coarse end are 28 % (1/√13) more or less than their share, and noise
+    // of the hemispheres adds some 5 % to the finest error: ln(1.28 · 1.05) / ln(137/13) = 0.13 of the slope.
+    assert!((slope + 1.0).abs() < 0.13, "slope {slope}, {points:?}");
+    // One thousandth of the mean irradiance for a tolerance of .05.
+    assert!(points[2].1 < 0.001, "{points:?}");
 }

@@ -175,6 +175,24 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_beam_counts_cells_across_and_not_along() {
+        for direction in [DVec3::Z, DVec3::new(0.3, -0.5, 0.8).normalize(), -DVec3::X] {
+            let beam = Beam { frame: Frame::around(direction), low: [-2.0, 10.0], cell: 0.25 };
+            let at = |u: f64, v: f64, along: f64| beam.frame.u * u + beam.frame.v * v + direction * along;
+            for along in [-1e3, 0.0, 7.0] {
+                assert_eq!(beam.index(at(-1.9, 10.1, along)), Some(0));
+                assert_eq!(beam.index(at(-1.6, 10.1, along)), Some(1));
+                assert_eq!(beam.index(at(-1.9, 10.3, along)), Some(POSITIONS));
+                assert_eq!(beam.index(at(7.9, 19.9, along)), Some(POSITIONS * POSITIONS - 1));
+                for outside in [at(-2.1, 12.0, along), at(8.1, 12.0, along), at(0.0, 9.9, along), at(0.0, 20.1, along)]
+                {
+                    assert_eq!(beam.index(outside), None);
+                }
+            }
+        }
+    }
+
+    #[test]
     fn directions_and_cells_are_inverse() {
         for cell in 0..6 * DIRECTIONS * DIRECTIONS {
             assert_eq!(direction_cell(cell_direction(cell) * 3.7), cell);
