@@ -12,12 +12,11 @@ const BORDER: f64 = 0.02;
 const SIDE: u32 = 60;
 
 fn scene(lamp: &str) -> String {
-    let mut text = format!("void plastic grey 0 0 5 .5 .5 .5 0 0\n{lamp}");
-    for ([a, b], [x, y], z) in SCREENS {
-        text += &format!("grey polygon s 0 0 12 {a} {b} {z} {x} {b} {z} {x} {y} {z} {a} {y} {z}\n");
-    }
+    let screens = SCREENS
+        .map(|([a, b], [x, y], z)| format!("grey polygon s 0 0 12 {a} {b} {z} {x} {b} {z} {x} {y} {z} {a} {y} {z}\n"));
     // The scene's bounds, which a distant source's cells divide, reach beyond the screens.
-    text + "grey polygon floor 0 0 12 -3 -3 -.01 3 -3 -.01 3 3 -.01 -3 3 -.01\n"
+    let floor = "grey polygon floor 0 0 12 -3 -3 -.01 3 -3 -.01 3 3 -.01 -3 3 -.01\n";
+    format!("void plastic grey 0 0 5 .5 .5 .5 0 0\n{lamp}{}{floor}", screens.concat())
 }
 
 /// Whether the segment from a floor point along `step` (per unit of height) meets a screen; none near its border.

@@ -44,7 +44,7 @@ fn radii_are_harmonic_mean_distances() {
                 // No sample differs from the next: what is left is rounding to f32 in file and sum.
                 close(radius(brightness, &|_| 2.0), 2.0, 1e-5, "sphere of radius 2");
                 let mean = |distance: &(dyn Fn(DVec3) -> f64 + Sync), want: f64, what| {
-                    close(radius(brightness, distance), want, STRATIFIED * want, what)
+                    close(radius(brightness, distance), want, STRATIFIED * want, what);
                 };
                 mean(&|d: DVec3| 1.0 / d.z, 1.5, "ceiling at height 1");
                 let wall = |d: DVec3| if d.x > 0.0 { 1.0 / d.x } else { FAR / scale };
