@@ -48,9 +48,10 @@ impl Conversion {
     /// The conversion for an output. Pictures of other primaries are only labelled (`labelled`).
     pub(crate) fn new(output: Output, labelled: bool) -> Self {
         match output {
-            Output::Rgb => Self::Same,
+            Output::Rgb | Output::Calculated { factor: 1.0, .. } => Self::Same,
+            Output::Calculated { factor, .. } => Self::Matrix(DMat3::IDENTITY * f64::from(factor)),
             Output::Primaries(_) if labelled => Self::Same,
-            Output::Primaries(p) => Self::Gamut(primaries(p).inverse() * adaptation([p[6], p[7]]) * TO_XYZ),
+            Output::Primaries(p) => Self::Gamut(from_xyz(Some(p)) * TO_XYZ),
             Output::Xyz => Self::Matrix(TO_XYZ * f64::from(LUMINOUS_EFFICACY)),
             Output::Photopic => Self::Weights(Rgb::new(
                 Rgb::X.brightness() * LUMINOUS_EFFICACY,
@@ -79,6 +80,11 @@ impl Conversion {
     }
 }
 
+/// From XYZ to RGB of these primaries, or of the standard ones.
+pub(crate) fn from_xyz(output: Option<[f64; 8]>) -> DMat3 {
+    output.map_or_else(|| TO_XYZ.inverse(), |p| primaries(p).inverse() * adaptation([p[6], p[7]]))
+}
+
 /// XYZ of RGB with these primaries, white (1, 1, 1) having Y = 1.
 fn primaries(p: [f64; 8]) -> DMat3 {
     let xyz = |x: f64, y: f64| DVec3::new(x, y, 1.0 - x - y);
@@ -95,7 +101,7 @@ fn adaptation([x, y]: [f64; 2]) -> DMat3 {
 }
 
 /// Moves a colour toward the grey of its original brightness until no channel is negative.
-fn desaturated(c: DVec3, grey: f64) -> DVec3 {
+pub(crate) fn desaturated(c: DVec3, grey: f64) -> DVec3 {
     let least = c.min_element();
     if least >= 0.0 {
         return c;

@@ -8,4 +8,5 @@ pub mod raderr;
 pub mod rpict;
 pub mod rtrace;
 mod session;
+mod spectral;
 mod statistics;

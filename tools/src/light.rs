@@ -1,11 +1,14 @@
 //! Between the programs and the renderer: loading, the ambient file, and answers to batches of rays.
 
 use crate::session::{Session, Stop};
-use ambit_base::EPSILON;
-use ambit_cli::{Class, Failure, Function, Rendering};
+use crate::spectral::{Channels, SpectralConversion};
+use ambit_base::{EPSILON, Rgb};
+use ambit_cli::{Class, Failure, Function, Output, Rendering};
 use ambit_file::{Header, general};
 use ambit_render::picture::SourceOutline;
-use ambit_render::{Answer, Definition, Environment, Names, OctreeSource, Renderer, Request, Store, TreeRay, load};
+use ambit_render::{
+    Answer, Definition, Environment, Names, OctreeSource, Renderer, Request, Spectra, Store, TreeRay, load,
+};
 use ambit_scene::{ErrorClass, ObjectId};
 use std::borrow::Cow;
 use std::path::Path;
@@ -16,6 +19,10 @@ pub(crate) trait Light {
     fn trace(&mut self, requests: &[Request]) -> Result<Vec<Answer>, Stop>;
     /// Answers one ray, and shows all that follow from it as they finish.
     fn trace_tree(&mut self, request: &Request, visit: &mut dyn FnMut(&TreeRay, Names<'_>)) -> Result<Answer, Stop>;
+    /// Spectra of the last batch, if the calculation is by wavelength.
+    fn spectra(&self) -> Option<&Spectra> {
+        None
+    }
     /// The name of an object.
     fn name(&self, id: ObjectId) -> Cow<'_, str>;
 }
@@ -24,20 +31,32 @@ pub(crate) trait Light {
 pub(crate) struct Scene<'a> {
     session: &'a Session,
     renderer: Renderer,
+    /// Of a calculation by wavelength.
+    spectrum: Option<Spectral>,
     /// The octree's header.
     pub(crate) header: Header,
+}
+
+/// What is kept of a calculation by wavelength.
+struct Spectral {
+    /// Spectra of the last batch.
+    spectra: Option<Spectra>,
+    /// What answers are converted to.
+    conversion: SpectralConversion,
 }
 
 impl<'a> Scene<'a> {
     /// Loads the octree and prepares the calculation.
     ///
-    /// `casting` says that rays are only cast, so that the ambient file stays closed.
+    /// `casting` says that rays are only cast, so that the ambient file stays closed. Values of answers are red, green
+    /// and blue, or, in a calculation by wavelength, the channels of `output`.
     pub(crate) fn open(
         session: &'a Session,
         source: OctreeSource,
         name: &str,
         rendering: &Rendering,
         casting: bool,
+        output: Output,
     ) -> Result<Self, Stop> {
         let find = |name: &str| session.search.find_path(name);
         let definitions: Vec<Definition> = rendering
@@ -70,7 +89,10 @@ impl<'a> Scene<'a> {
             renderer.measure(crate::statistics::clock);
         }
         session.begin_work();
-        Ok(Self { session, renderer, header })
+        let spectrum = &rendering.options.spectrum;
+        let spectrum = (!spectrum.is_rgb())
+            .then(|| Spectral { spectra: None, conversion: SpectralConversion::new(output, spectrum) });
+        Ok(Self { session, renderer, spectrum, header })
     }
 
     /// Outlines of the light sources.
@@ -82,6 +104,10 @@ impl<'a> Scene<'a> {
     pub(crate) fn close(mut self) -> Result<(), Stop> {
         let result = self.renderer.finish(&self.session.messages).map_err(failed);
         if let Some(report) = self.renderer.report() {
+            if self.renderer.passes() > 1 {
+                let passes = self.renderer.passes();
+                self.session.messages.print(format_args!("statistics - the first of {passes} passes, by wavelength:"));
+            }
             for line in crate::statistics::lines(&report, self.session.meter.seconds()) {
                 self.session.messages.print(format_args!("statistics - {line}"));
             }
@@ -93,7 +119,20 @@ impl<'a> Scene<'a> {
 impl Light for Scene<'_> {
     fn trace(&mut self, requests: &[Request]) -> Result<Vec<Answer>, Stop> {
         self.session.check()?;
-        let answers = self.renderer.trace(requests, &self.session.messages).map_err(failed)?;
+        let notify = &self.session.messages;
+        let answers = match &mut self.spectrum {
+            None => self.renderer.trace(requests, notify).map_err(failed)?,
+            Some(spectral) => {
+                let (mut answers, spectra) = self.renderer.trace_spectra(requests, notify).map_err(failed)?;
+                let mut channels = Channels::default();
+                for (i, answer) in answers.iter_mut().enumerate() {
+                    spectral.conversion.apply(spectra.value(i), &mut channels);
+                    answer.value = Rgb::from_slice(&channels);
+                }
+                spectral.spectra = Some(spectra);
+                answers
+            }
+        };
         self.session.meter.set_rays(self.renderer.rays());
         Ok(answers)
     }
@@ -103,6 +142,10 @@ impl Light for Scene<'_> {
         let answer = self.renderer.trace_tree(request, &self.session.messages, visit).map_err(failed)?;
         self.session.meter.set_rays(self.renderer.rays());
         Ok(answer)
+    }
+
+    fn spectra(&self) -> Option<&Spectra> {
+        self.spectrum.as_ref()?.spectra.as_ref()
     }
 
     fn name(&self, id: ObjectId) -> Cow<'_, str> {
@@ -139,6 +182,7 @@ fn ambient_header(rendering: &Rendering, octree: &str) -> Vec<String> {
         if on == usual { String::new() } else { format!(" -{name}{}", if on { '+' } else { '-' }) }
     };
     let medium = o.medium;
+    let [longest, .., shortest] = o.spectrum.limits();
     let mist = if medium.extinction.max_element() > 0.0 {
         let (e, m) = (medium.extinction, medium.albedo);
         format!(
@@ -157,7 +201,7 @@ fn ambient_header(rendering: &Rendering, octree: &str) -> Vec<String> {
     };
     let line = format!(
         "rpict -av {} {} {} -aw {} -ab {} -aa {} -ad {} -as {} -ar {}{mist}{}{} -dr {} -ds {} -dt {} -dc {} -ss {} -st {} \
-         -lr {} -lw {} -cw 380 780 -cs 3 {octree}",
+         -lr {} -lw {} -cw {} {} -cs 3 {octree}",
         f(a.value.x),
         f(a.value.y),
         f(a.value.z),
@@ -176,7 +220,9 @@ fn ambient_header(rendering: &Rendering, octree: &str) -> Vec<String> {
         g(s.sampling),
         g(s.threshold),
         o.limits.reflections,
-        g(o.limits.weight)
+        g(o.limits.weight),
+        g(shortest),
+        g(longest)
     );
     let [date, gmt] = Session::time_lines();
     vec![line, format!("SOFTWARE= {}", ambit_cli::VERSION), date, gmt]

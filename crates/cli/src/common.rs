@@ -3,6 +3,7 @@
 
 use crate::failure::Failure;
 use crate::table::{Label, Place, Row};
+use ambit_base::LUMINOUS_EFFICACY;
 
 /// Access to one part of a program's parameters, so that programs share rows of the table.
 pub trait Carries<T> {
@@ -56,10 +57,21 @@ pub enum Output {
     Melanopic,
     /// `-pA`: the mean of the channels.
     Average,
+    /// `-co`: after it, what is calculated, times the factor of the output that it took the place of: all bins of the
+    /// spectrum, or (`-co-`) red, green and blue.
+    Calculated {
+        /// All bins.
+        bins: bool,
+        /// What they are multiplied by.
+        factor: f32,
+    },
 }
 
 /// Red, green, blue and white of Radiance's standard RGB.
 const STANDARD: [f64; 8] = [0.64, 0.33, 0.29, 0.6, 0.15, 0.06, 1.0 / 3.0, 1.0 / 3.0];
+
+/// Lumens in a watt of scotopic light as Radiance counts them.
+pub const SCOTOPIC_EFFICACY: f32 = 412.0;
 
 /// How far chromaticities may be off the standard and still count as it.
 const STANDARD_TOLERANCE: f64 = 0.001;
@@ -81,6 +93,27 @@ impl Output {
         Ok(Self::Primaries(v))
     }
 
+    /// The output of `-co+` or `-co-` after this one.
+    pub(crate) fn calculated(self, bins: bool) -> Self {
+        let factor = match self {
+            Self::Xyz | Self::Photopic | Self::Melanopic => LUMINOUS_EFFICACY,
+            Self::Scotopic => SCOTOPIC_EFFICACY,
+            Self::Rgb | Self::Primaries(_) | Self::Average => 1.0,
+            Self::Calculated { factor, .. } => factor,
+        };
+        Self::Calculated { bins, factor }
+    }
+
+    /// True if all bins of the spectrum are written.
+    pub fn bins(self) -> bool {
+        matches!(self, Self::Calculated { bins: true, .. })
+    }
+
+    /// True if three numbers of a colour are written.
+    pub(crate) fn coloured(self) -> bool {
+        matches!(self, Self::Rgb | Self::Xyz | Self::Primaries(_) | Self::Calculated { bins: false, .. })
+    }
+
     /// The primaries to record in a header, if they are red, green and blue at all.
     pub fn recorded(self) -> Option<[f64; 8]> {
         match self {
@@ -92,7 +125,7 @@ impl Output {
 
     fn shown(self) -> String {
         match self {
-            Self::Rgb | Self::Average => Label::tabs("-pRGB", 4, "standard RGB color output"),
+            Self::Rgb | Self::Average | Self::Calculated { .. } => Label::tabs("-pRGB", 4, "standard RGB color output"),
             Self::Xyz => Label::tabs("-pXYZ", 4, "CIE XYZ color output"),
             Self::Primaries(v) => {
                 let numbers: Vec<String> = v.iter().map(|x| format!("{x:.4}")).collect();

@@ -20,11 +20,12 @@ mod rendering;
 mod scan;
 mod signals;
 mod spec;
+mod spectrum;
 mod systems;
 mod table;
 mod viewing;
 
-pub use common::{Carries, Common, Output};
+pub use common::{Carries, Common, Output, SCOTOPIC_EFFICACY};
 pub use console::{ConsoleMessages, attach_error_file};
 pub use defaults::defaults;
 pub use failure::{Class, Failure};
@@ -34,10 +35,11 @@ pub use outside::{Outside, Process};
 pub use picture::{PictureOptions, picture_table};
 pub use progress::{Progress, Times};
 pub use rays::{InputFormat, OutputFormat, RayOptions, ray_table};
-pub use rendering::{Function, PhotonMap, Rendering, Spectrum};
+pub use rendering::{Function, PhotonMap, Rendering};
 pub use scan::{Arguments, Scan, scan};
 pub use signals::{Caught, Signals};
 pub use spec::{Field, OutputSpec, TreeSpec};
+pub use spectrum::Spectrum;
 pub use table::{Label, Place, Row};
 
 /// What `-version` prints and what headers record as the software: the version of Radiance whose files and options

@@ -33,7 +33,6 @@ pub enum OutputFormat {
 
 /// Every parameter of a run of `rtrace`.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct RayOptions {
     /// Parameters of the light.
     pub rendering: Rendering,
@@ -55,8 +54,6 @@ pub struct RayOptions {
     pub immediate: bool,
     /// `-ld`: rays reach no farther than their direction's length.
     pub limited: bool,
-    /// `-co`: write spectra.
-    pub spectral: bool,
     /// `-te`, `-ti`: rays of the tree that are written.
     pub tree: Selection,
 }
@@ -75,7 +72,6 @@ impl RayOptions {
             height: 0,
             immediate: false,
             limited: false,
-            spectral: false,
             tree: Selection::All,
         }
     }
@@ -154,10 +150,7 @@ pub fn ray_table() -> Vec<Row<RayOptions>> {
         ),
     ];
     rows.extend(format_rows());
-    rows.extend(colour_rows(|s: &mut RayOptions| {
-        s.rendering.spectrum.samples > 3 && s.common.output == Output::Rgb
-            || s.spectral && s.rendering.spectrum.samples <= 3
-    }));
+    rows.extend(colour_rows(|s: &mut RayOptions| s.common.output.bins()));
     rows.extend(scalar_rows());
     rows.extend(rendering_rows());
     rows.extend(tree_rows());
@@ -247,13 +240,22 @@ fn scalar_rows() -> Vec<Row<RayOptions>> {
         bare("pS", |s| s.common.output = Output::Scotopic, "write scotopic luminance or illuminance"),
         bare("pM", |s| s.common.output = Output::Melanopic, "write melanopic luminance or illuminance"),
         bare("pA", |s| s.common.output = Output::Average, "write the mean of the channels"),
-        Row::new("co", Place::Switch(|s: &mut RayOptions| &mut s.spectral), "write spectra (not supported)")
-            .shown(Label::Own(|s| {
-                let (sign, comment) =
-                    if s.spectral { ('+', "output spectral values") } else { ('-', "output tristimulus colors") };
-                Label::tabs(&format!("-co{sign}"), 4, comment)
-            }))
-            .hidden_if(|s| s.rendering.spectrum.samples <= 3),
+        Row::new(
+            "co",
+            Place::Toggle(|s: &RayOptions| s.common.output.bins(), |s, on| {
+                s.common.output = s.common.output.calculated(on);
+            }),
+            "write all bins of the spectrum (with -cs above 3) instead of a colour; of this and -p…, the last one counts",
+        )
+        .shown(Label::Own(|s| {
+            let on = s.common.output.bins();
+            let (sign, comment) = if on { ('+', "output spectral values") } else { ('-', "output tristimulus colors") };
+            Label::tabs(&format!("-co{sign}"), 4, comment)
+        }))
+        .hidden_if(|s| {
+            let output = s.common.output;
+            s.rendering.spectrum.samples <= 3 || !output.bins() && !output.coloured()
+        }),
     ]
 }
 

@@ -2,6 +2,7 @@
 
 use crate::common::{Carries, Common};
 use crate::failure::Failure;
+use crate::spectrum::{Spectrum, spectrum_rows};
 use crate::systems::system_rows;
 use crate::table::{Label, Place, Row};
 use ambit_render::{Options, Reuse, Selection};
@@ -38,17 +39,6 @@ pub enum Function {
     Expression(String),
 }
 
-/// How radiation is divided by wavelength.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spectrum {
-    /// Bins; 3 are the three channels.
-    pub samples: i32,
-    /// One end, nm.
-    pub from: f64,
-    /// The other end, nm.
-    pub to: f64,
-}
-
 /// A photon map to be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PhotonMap {
@@ -75,23 +65,21 @@ impl Rendering {
             reuse: Some(Reuse::Auto),
             statistics: false,
             functions: Vec::new(),
-            spectrum: Spectrum { samples: 3, from: 380.0, to: 780.0 },
+            spectrum: Spectrum::default(),
             photon_maps: Vec::new(),
             photon_radius: 0.0,
             notices: Vec::new(),
         }
     }
 
-    /// Refuses what can not be calculated.
+    /// Settles on the bins of the spectrum, and refuses what can not be calculated.
     ///
     /// # Errors
     /// Names the option that asks for it.
-    pub fn check(&self) -> Result<(), Failure> {
-        if self.spectrum.samples < 3 || self.spectrum.from == self.spectrum.to {
-            return Err(Failure::user("unsupported spectral sampling"));
-        }
-        if self.spectrum.samples > 3 {
-            return Err(Failure::unsupported("spectral calculation (-cs above 3) is"));
+    pub fn check(&mut self) -> Result<(), Failure> {
+        self.options.spectrum = self.spectrum.settled()?;
+        if let Some(file) = self.ambient_file.as_ref().filter(|_| !self.options.spectrum.is_rgb()) {
+            return Err(Failure::unsupported(&format!("an ambient file (-af {file}) with -cs above 3 is")));
         }
         if let Some(map) = self.photon_maps.first() {
             return Err(Failure::unsupported(&format!("photon map \"{}\" (-ap) is", map.file)));
@@ -314,30 +302,8 @@ pub(crate) fn rendering_rows<S: Carries<Rendering> + Carries<Common>>() -> Vec<R
 
 /// `-cs -cw -lr -lw -am`: those of `-defaults` after the light.
 fn limit_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
-    let spectral: fn(&mut S) -> bool = |s| s.part().spectrum.samples <= 3;
-    vec![
-        Row::new("cs", Place::Integer(|s: &mut S| &mut s.part().spectrum.samples), "spectral bins (only 3 supported)")
-            .shown(Label::Own(|s| {
-                Label::tabs(&format!("-cs {:<2}", s.part().spectrum.samples), 4, "number of spectral bins")
-            }))
-            .hidden_if(spectral)
-            .values("N"),
-        Row::new(
-            "cw",
-            Place::Reals(2, |s: &mut S, v| {
-                let spectrum = &mut s.part().spectrum;
-                (spectrum.from, spectrum.to) = (v[0].min(v[1]), v[0].max(v[1]));
-                Ok(())
-            }),
-            "limits of the spectrum in nm",
-        )
-        .shown(Label::Own(|s| {
-            let Spectrum { from, to, .. } = s.part().spectrum;
-            let [from, to] = [from, to].map(|w| ambit_file::general(w, 6));
-            Label::tabs(&format!("-cw {from} {to}"), 3, "wavelength limits (nm)")
-        }))
-        .hidden_if(spectral)
-        .values("FROM TO"),
+    let mut rows = spectrum_rows();
+    rows.extend(vec![
         Row::new(
             "lr",
             Place::Integer(|s: &mut S| &mut s.part().options.limits.reflections),
@@ -367,7 +333,8 @@ fn limit_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
             Label::tabs(&format!("-am {:.1}", s.part().photon_radius), 4, "max photon search radius")
         }))
         .values("RADIUS"),
-    ]
+    ]);
+    rows
 }
 
 /// Files, names and definitions, which `-defaults` does not print.
@@ -484,7 +451,11 @@ mod tests {
         let mut r = Rendering::new(Options::rpict());
         assert!(r.check().is_ok());
         r.spectrum.samples = 9;
-        assert!(r.check().unwrap_err().text.contains("-cs"));
+        assert!(r.check().is_ok());
+        assert_eq!(r.options.spectrum.bins(), 9);
+        r.ambient_file = Some("x.amb".into());
+        let text = r.check().unwrap_err().text;
+        assert!(text.contains("-cs") && text.contains("-af x.amb") && text.contains("not supported"), "{text}");
         r.spectrum.samples = 2;
         assert_eq!(r.check().unwrap_err().text, "unsupported spectral sampling");
         let mut r = Rendering::new(Options::rpict());

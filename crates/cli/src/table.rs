@@ -30,6 +30,8 @@ pub enum Place<S> {
     Bare(fn(&mut S)),
     /// Nothing, or glued to it `+ 1 - 0`; alone it toggles.
     Switch(fn(&mut S) -> &mut bool),
+    /// The same, kept otherwise: how it stands, and how it is set.
+    Toggle(fn(&S) -> bool, fn(&mut S, bool)),
     /// A word glued to it that the first function accepts.
     Glued(fn(&str) -> bool, fn(&mut S, &str) -> Result<(), Failure>),
     /// An integer.

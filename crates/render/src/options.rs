@@ -1,5 +1,6 @@
 //! Every parameter of a calculation, complete and typed: what the rendering options of `rpict` and `rtrace` set.
 
+use crate::spectral::Spectrum;
 use ambit_ambient::{OVERLAP, Systems};
 use ambit_base::Rgb;
 
@@ -16,6 +17,8 @@ pub struct Options {
     pub medium: Medium,
     /// `-l*`: where ray trees end.
     pub limits: Limits,
+    /// `-cs`, `-cw`: bins of the spectrum.
+    pub spectrum: Spectrum,
     /// `-bv`: surfaces are seen from behind.
     pub back_visible: bool,
     /// `-i`: the first opaque surface answers with its irradiance.
@@ -147,6 +150,7 @@ impl Options {
             },
             medium: Medium { extinction: Rgb::ZERO, albedo: Rgb::ZERO, eccentricity: 0.0, sampling: 0.0 },
             limits: Limits { reflections: 7, weight: 1e-4 },
+            spectrum: Spectrum::default(),
             back_visible: true,
             irradiance: false,
             uncorrelated: false,

@@ -11,6 +11,7 @@ use crate::ray::{Interior, Kinds, Ray};
 use crate::request::{Aim, Answer, Request};
 use crate::sharing::Sharing;
 use crate::sources::{Tally, sensor};
+use crate::spectral::Spectra;
 use crate::tracer::{Origin, Tracer};
 use crate::walk::Walk;
 use crate::work::Work;
@@ -44,6 +45,10 @@ pub struct Renderer {
     told: Vec<ambit_cal::Warning>,
     rays: u64,
     pub(crate) sharing: Option<Sharing>,
+    /// Which pass of a calculation by wavelength cache, tally and rays belong to.
+    pass: usize,
+    /// Caches, tallies and rays of the other passes.
+    waiting: Vec<(Cache, Tally, u64)>,
 }
 
 impl Renderer {
@@ -64,10 +69,57 @@ impl Renderer {
             seed: options.seed,
             systems: a.systems,
         };
-        let cache = Cache::new(params, scene.cube.origin, scene.cube.edge);
+        let cache = || Cache::new(params, scene.cube.origin, scene.cube.edge);
+        let passes = if scene.modifiers.spectral() { options.spectrum.passes() } else { 1 };
         let sources = scene.sources.len();
         let works = (0..=rayon::current_num_threads()).map(|_| Mutex::new(Work::new(sources))).collect();
-        Ok(Self { scene, options, cache, tally: Tally::new(sources), works, told: Vec::new(), rays: 0, sharing: None })
+        let waiting = (1..passes).map(|_| (cache(), Tally::new(sources), 0)).collect();
+        Ok(Self {
+            cache: cache(),
+            scene,
+            options,
+            tally: Tally::new(sources),
+            works,
+            told: Vec::new(),
+            rays: 0,
+            sharing: None,
+            pass: 0,
+            waiting,
+        })
+    }
+
+    /// As [`Renderer::trace`], by wavelength: the first pass's answers, and the spectra of all.
+    pub fn trace_spectra(
+        &mut self,
+        requests: &[Request],
+        notify: &dyn Notify,
+    ) -> Result<(Vec<Answer>, Spectra), Error> {
+        let mut passes = Vec::with_capacity(self.passes());
+        for pass in 0..self.passes() {
+            self.turn_to(pass);
+            passes.push(self.trace(requests, notify)?);
+        }
+        self.turn_to(0);
+        let spectra = Spectra::gather(&self.options.spectrum, &passes);
+        Ok((passes.swap_remove(0), spectra))
+    }
+
+    /// How many passes a calculation by wavelength takes in this scene.
+    pub fn passes(&self) -> usize {
+        1 + self.waiting.len()
+    }
+
+    /// Brings a pass's cache and tally into their places, and lets those that were there wait.
+    fn turn_to(&mut self, pass: usize) {
+        for place in [self.pass, pass] {
+            // That of the first pass waits in no place of its own but in that of the pass that is on.
+            if let Some((cache, tally, rays)) = place.checked_sub(1).and_then(|i| self.waiting.get_mut(i)) {
+                std::mem::swap(&mut self.cache, cache);
+                std::mem::swap(&mut self.tally, tally);
+                std::mem::swap(&mut self.rays, rays);
+            }
+        }
+        self.pass = pass;
     }
 
     /// Answers `requests`, in order. Warnings (of the ambient file, of function files) go to `notify`.
@@ -83,7 +135,13 @@ impl Renderer {
     }
 
     fn batch(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Error> {
-        let tracer = Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works };
+        let tracer = Tracer {
+            scene: &self.scene,
+            options: &self.options,
+            tally: &self.tally,
+            works: &self.works,
+            pass: self.pass,
+        };
         let cache = &self.cache;
         let one = |request: &Request| {
             let mut misses = Vec::new();
@@ -142,8 +200,13 @@ impl Renderer {
         self.scene.complaints.drain(|text, id| notify.warn(&format!("{text} for {}", objects.describe(id))));
     }
 
-    /// Rays traced so far.
+    /// Rays traced so far, in all passes.
     pub fn rays(&self) -> u64 {
+        self.rays + self.waiting.iter().map(|w| w.2).sum::<u64>()
+    }
+
+    /// Rays of the pass that is on; the first one between calls.
+    pub(crate) fn rays_of_pass(&self) -> u64 {
         self.rays
     }
 

@@ -36,7 +36,7 @@ pub struct Report {
 }
 
 impl Renderer {
-    /// Counts look-ups and measures time from now on.
+    /// Counts look-ups and measures time from now on; of a calculation by wavelength, those of the first pass.
     pub fn measure(&mut self, clock: Clock) {
         self.cache_mut().observe(clock);
     }
@@ -51,7 +51,7 @@ impl Renderer {
             *all -= loaded;
         }
         Some(Report {
-            rays: self.rays(),
+            rays: self.rays_of_pass(),
             made,
             loaded: loaded.clone(),
             samples: statistics.samples.clone(),

@@ -18,6 +18,8 @@ pub(crate) struct Tracer<'s> {
     pub(crate) options: &'s Options,
     pub(crate) tally: &'s Tally,
     pub(crate) works: &'s [Mutex<Work>],
+    /// Which pass of a calculation by wavelength this is.
+    pub(crate) pass: usize,
 }
 
 /// What a diffuse question carries so that the path can go on from it.

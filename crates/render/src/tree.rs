@@ -148,7 +148,8 @@ impl Renderer {
         }
         let mut hemispheres = Hemispheres::new();
         for _ in 0..MOST_ROUNDS {
-            let tracer = Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works };
+            let tracer =
+                Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works, pass: 0 };
             let mut misses = Vec::new();
             let mut work = tracer.work();
             Walk { tracer: &tracer, cache: &self.cache, work: &mut work, misses: &mut misses, observer: () }
@@ -178,7 +179,8 @@ impl Renderer {
         hemispheres: Hemispheres,
         visit: &mut dyn FnMut(&TreeRay, Names<'_>),
     ) -> Answer {
-        let tracer = Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works };
+        let tracer =
+            Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works, pass: 0 };
         let names = |id: ObjectId| self.name(id);
         let mut misses = Vec::new();
         let mut work = tracer.work();

@@ -54,6 +54,10 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         return Ok(());
     }
     options.rendering.check()?;
+    let spectrum = &options.rendering.options.spectrum;
+    if !spectrum.shows_colour() {
+        return Err(Failure::user("unsupported spectral sampling").into());
+    }
     // Reports end with statistics, where there is a cache.
     let ambient = &options.rendering.options.ambient;
     options.rendering.statistics |= options.report > 0 && ambient.bounces > 0;
@@ -81,7 +85,7 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     }
     session.prepare(&options.common)?;
     let (source, name) = source(session)?;
-    let mut scene = Scene::open(session, source, &name, &options.rendering, false)?;
+    let mut scene = Scene::open(session, source, &name, &options.rendering, false, options.common.output)?;
     let result = render(session, &options, &mut scene);
     // The ambient file is closed whatever happened; the first error counts.
     result.and(scene.close())
@@ -102,7 +106,10 @@ fn source(session: &Session) -> Result<(OctreeSource, String), Stop> {
 
 fn render(session: &Session, options: &PictureOptions, scene: &mut Scene<'_>) -> Result<(), Stop> {
     let space = if options.common.output == Output::Xyz { PixelSpace::Xyz } else { PixelSpace::Rgb };
-    let picture = Picture { session, options, conversion: Conversion::new(options.common.output, true), space };
+    // Spectra come converted.
+    let by_wavelength = !options.rendering.options.spectrum.is_rgb();
+    let conversion = if by_wavelength { Conversion::Same } else { Conversion::new(options.common.output, true) };
+    let picture = Picture { session, options, conversion, space };
     if options.sequence > 0 {
         return sequence::run(&picture, scene, stdin().lock());
     }

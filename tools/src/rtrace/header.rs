@@ -2,7 +2,7 @@
 
 use crate::session::{Session, Stop};
 use ambit_cli::{Output, OutputFormat, OutputSpec, RayOptions};
-use ambit_file::{Header, format_line};
+use ambit_file::{Header, format_line, general};
 use std::io::Write;
 
 /// The primaries that are recorded for XYZ.
@@ -26,6 +26,12 @@ pub(crate) fn write(
     if components > 0 && !options.fields.ends_with(['t', 'T']) {
         header.push(format!("NCOMP={components}"));
     }
+    let spectrum = &options.rendering.options.spectrum;
+    let spectral = options.common.output.bins() && !spectrum.is_rgb();
+    if spectral {
+        let limits = spectrum.limits().map(|nm| general(nm, 6));
+        header.push(format!("WAVELENGTH_SPLITS= {}", limits.join(" ")));
+    }
     let primaries = match options.common.output {
         Output::Xyz => Some(XYZ),
         Output::Primaries(p) => Some(p),
@@ -39,6 +45,7 @@ pub(crate) fn write(
         OutputFormat::Ascii => "ascii",
         OutputFormat::Float => "float",
         OutputFormat::Double => "double",
+        OutputFormat::Colour if spectral => "Radiance_spectra",
         OutputFormat::Colour if options.common.output == Output::Xyz => "32-bit_rle_xyze",
         OutputFormat::Colour => "32-bit_rle_rgbe",
     };

@@ -6,9 +6,9 @@ mod record;
 mod stream;
 mod tree;
 
-use crate::colour::Conversion;
 use crate::light::Scene;
 use crate::session::{Session, Stop, Tool, split};
+use crate::spectral::Converter;
 use ambit_base::Notify;
 use ambit_cli::{
     About, COMMON_FEATURES, Failure, Features, Field, OutputFormat, OutputSpec, RAY_FEATURES, RayOptions, ray_table,
@@ -55,7 +55,8 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         Some(command) => OctreeSource::Command(command.to_owned()),
         None => OctreeSource::File(octree.clone()),
     };
-    let mut scene = Scene::open(session, source, &octree, &options.rendering, !job.spec.shades())?;
+    let mut scene =
+        Scene::open(session, source, &octree, &options.rendering, !job.spec.shades(), options.common.output)?;
     let result = job.run(session, &options, &mut scene);
     // The ambient file is closed whatever happened; the first error counts.
     result.and(scene.close())
@@ -64,18 +65,25 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
 /// What a run has to do, complete and checked.
 pub(crate) struct Job {
     spec: OutputSpec,
-    conversion: Conversion,
+    conversion: Converter,
 }
 
 impl Job {
     fn new(options: &RayOptions, session: &Session) -> Result<Self, Stop> {
         let spec = OutputSpec::parse(&options.fields)?;
-        let conversion = Conversion::new(options.common.output, false);
+        let spectrum = &options.rendering.options.spectrum;
+        let conversion = Converter::new(options.common.output, spectrum);
+        if !spectrum.shows_colour() && !options.common.output.bins() {
+            session.messages.warn("spectral range incompatible with color output");
+        }
+        if spec.tree.is_some() && !spectrum.is_rgb() {
+            return Err(Failure::unsupported(&format!("ray trees (-o{}) with -cs above 3 are", options.fields)).into());
+        }
         if options.format == OutputFormat::Colour {
             if spec.tree.is_some() || !matches!(spec.fields[..], [Field::Value | Field::Mirrored | Field::Unmirrored]) {
                 return Err(Failure::user("color format only with -ov, -or, -ox").into());
             }
-            if conversion.channels() != 3 {
+            if conversion.channels() < 3 {
                 return Err(Failure::user("color format incompatible with -pY, -pS, -pM").into());
             }
         }
@@ -122,8 +130,8 @@ impl Job {
         }
         let written = out.write_all(&head).and_then(|()| if options.width > 0 { out.flush() } else { Ok(()) });
         written.map_err(|e| Stop::writing("write error", &e))?;
-        let records = RecordWriter::new(&self.spec.fields, self.conversion, options.format);
-        let tree = self.spec.tree.as_ref().map(|t| TreeWriter::new(t, self.conversion, options));
+        let records = RecordWriter::new(&self.spec.fields, &self.conversion, options.format);
+        let tree = self.spec.tree.as_ref().map(|t| TreeWriter::new(t, &self.conversion, options));
         let reader = RayReader::new(BufReader::with_capacity(1 << 16, stdin().lock()), options.input);
         let complete =
             stream::Stream::new(options, &self.spec).run(reader, &records, tree.as_ref(), scene, &mut out)?;

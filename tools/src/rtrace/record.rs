@@ -1,33 +1,61 @@
 //! Records: the fields of an answer in the format that is wanted.
 
-use crate::colour::Conversion;
 use crate::quantity::push_exponent;
+use crate::spectral::{Channels, Converter};
 use ambit_base::{DVec3, FAR, Rgb};
 use ambit_cli::{Field, OutputFormat};
-use ambit_file::encode_pixel;
-use ambit_render::{Answer, Names};
+use ambit_file::encode_spectrum;
+use ambit_render::{Answer, Names, Spectra, Spectrum};
 use ambit_scene::VOID;
+
+/// Spectra of an answer.
+#[derive(Clone, Copy)]
+struct Bins<'a> {
+    value: &'a [f32],
+    mirrored: &'a [f32],
+    coefficient: &'a [f32],
+}
 
 /// Writes records.
 pub(crate) struct RecordWriter<'a> {
     fields: &'a [Field],
-    conversion: Conversion,
+    conversion: &'a Converter,
     format: OutputFormat,
 }
 
 impl<'a> RecordWriter<'a> {
     /// Records of these fields.
-    pub(crate) fn new(fields: &'a [Field], conversion: Conversion, format: OutputFormat) -> Self {
+    pub(crate) fn new(fields: &'a [Field], conversion: &'a Converter, format: OutputFormat) -> Self {
         Self { fields, conversion, format }
     }
 
-    /// Appends the record of an answer.
+    /// Appends the records of a batch, with its spectra if the calculation is by wavelength.
+    pub(crate) fn write_all(&self, out: &mut Vec<u8>, answers: &[Answer], spectra: Option<&Spectra>, names: Names<'_>) {
+        for (i, answer) in answers.iter().enumerate() {
+            let bins =
+                spectra.map(|s| Bins { value: s.value(i), mirrored: s.mirrored(i), coefficient: s.coefficient(i) });
+            self.write_bins(out, answer, answer.value, bins, names);
+        }
+    }
+
+    /// Appends the record of an answer in red, green and blue.
     pub(crate) fn write(&self, out: &mut Vec<u8>, answer: &Answer, names: Names<'_>) {
         self.write_with(out, answer, answer.value, names);
     }
 
     /// As [`Self::write`], for a ray that brings `contribution` to the primary ray.
     pub(crate) fn write_with(&self, out: &mut Vec<u8>, answer: &Answer, contribution: Rgb, names: Names<'_>) {
+        self.write_bins(out, answer, contribution, None, names);
+    }
+
+    fn write_bins(
+        &self,
+        out: &mut Vec<u8>,
+        answer: &Answer,
+        contribution: Rgb,
+        bins: Option<Bins<'_>>,
+        names: Names<'_>,
+    ) {
         // A ray that met nothing has no names; a surface without a modifier has a void one.
         let name = |out: &mut Vec<u8>, id| {
             if answer.surface == VOID {
@@ -41,10 +69,10 @@ impl<'a> RecordWriter<'a> {
             match field {
                 Field::Origin => self.vector(out, answer.origin),
                 Field::Direction => self.vector(out, answer.direction),
-                Field::Value => self.colour(out, answer.value),
-                Field::Contribution => self.colour(out, contribution),
+                Field::Value => self.colour(out, answer.value, bins.map(|b| b.value)),
+                Field::Contribution => self.colour(out, contribution, bins.map(|b| b.value)),
                 Field::Weight => self.number(out, f64::from(answer.weight)),
-                Field::Coefficient => self.colour(out, answer.coefficient),
+                Field::Coefficient => self.colour(out, answer.coefficient, bins.map(|b| b.coefficient)),
                 Field::Length => self.number(out, answer.length),
                 Field::FirstLength => self.number(out, answer.first_length),
                 Field::Coordinates => answer.uv.iter().for_each(|&x| self.number(out, x)),
@@ -54,8 +82,15 @@ impl<'a> RecordWriter<'a> {
                 Field::Surface => name(out, answer.surface),
                 Field::Modifier => name(out, answer.modifier),
                 Field::Material => name(out, answer.material),
-                Field::Mirrored => self.colour(out, answer.mirrored),
-                Field::Unmirrored => self.colour(out, answer.value - answer.mirrored),
+                Field::Mirrored => self.colour(out, answer.mirrored, bins.map(|b| b.mirrored)),
+                Field::Unmirrored => match bins {
+                    Some(b) => {
+                        let mut rest = Channels::default();
+                        rest.iter_mut().zip(b.value.iter().zip(b.mirrored)).for_each(|(r, (v, m))| *r = v - m);
+                        self.colour(out, Rgb::ZERO, Some(&rest[..b.value.len()]));
+                    }
+                    None => self.colour(out, answer.value - answer.mirrored, None),
+                },
                 Field::MirroredLength => self.number(out, answer.mirrored_length),
                 Field::UnmirroredLength => self.number(out, answer.unmirrored_length),
                 Field::Tilde => out.extend_from_slice(b"~\t"),
@@ -68,7 +103,13 @@ impl<'a> RecordWriter<'a> {
 
     /// The record that stands for a ray without direction: black and nowhere, but for the ray before it.
     pub(crate) fn write_bogus(&self, out: &mut Vec<u8>, (origin, direction): (DVec3, DVec3), names: Names<'_>) {
-        self.write(out, &Answer::nothing(origin, direction), names);
+        let (zero, one) = ([0.0; Spectrum::MOST], [1.0; Spectrum::MOST]);
+        let bins = match self.conversion {
+            Converter::Rgb(_) => None,
+            Converter::Spectral(_) => Some(Bins { value: &zero, mirrored: &zero, coefficient: &one }),
+        };
+        let answer = Answer::nothing(origin, direction);
+        self.write_bins(out, &answer, answer.value, bins, names);
     }
 
     fn vector(&self, out: &mut Vec<u8>, v: DVec3) {
@@ -77,13 +118,27 @@ impl<'a> RecordWriter<'a> {
         }
     }
 
-    fn colour(&self, out: &mut Vec<u8>, colour: Rgb) {
-        let c = self.conversion.apply(colour);
+    /// A colour, or in a calculation by wavelength its `bins`.
+    fn colour(&self, out: &mut Vec<u8>, colour: Rgb, bins: Option<&[f32]>) {
+        match (self.conversion, bins) {
+            (Converter::Spectral(conversion), Some(bins)) => {
+                self.channels(out, conversion.apply(bins, &mut Channels::default()));
+            }
+            (Converter::Rgb(conversion), _) => {
+                self.channels(out, &conversion.apply(colour).to_array()[..conversion.channels()]);
+            }
+            (Converter::Spectral(_), None) => {}
+        }
+    }
+
+    fn channels(&self, out: &mut Vec<u8>, channels: &[f32]) {
         if self.format == OutputFormat::Colour {
-            out.extend_from_slice(&encode_pixel(c));
+            let start = out.len();
+            out.resize(start + channels.len() + 1, 0);
+            encode_spectrum(channels, &mut out[start..]);
             return;
         }
-        for &x in &c.to_array()[..self.conversion.channels()] {
+        for &x in channels {
             self.number(out, f64::from(x));
         }
     }

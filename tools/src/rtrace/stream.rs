@@ -90,9 +90,10 @@ impl Stream {
                     before = (answer.origin, answer.direction);
                 }
             } else {
-                for answer in light.trace(&requests)? {
-                    records.write(&mut bytes, &answer, &|id| light.name(id));
-                    before = (answer.origin, answer.direction);
+                let answers = light.trace(&requests)?;
+                records.write_all(&mut bytes, &answers, light.spectra(), &|id| light.name(id));
+                if let Some(last) = answers.last() {
+                    before = (last.origin, last.direction);
                 }
             }
             made += requests.len() as u64;
@@ -144,7 +145,7 @@ fn show(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colour::Conversion;
+    use crate::spectral::Converter;
     use ambit_base::Rgb;
     use ambit_cli::{InputFormat, Output, OutputFormat};
     use ambit_render::{Names, TreeRay};
@@ -200,7 +201,8 @@ mod tests {
         options.common.output = Output::Average;
         set(&mut options);
         let spec = OutputSpec::parse(&options.fields).unwrap();
-        let records = RecordWriter::new(&spec.fields, Conversion::new(options.common.output, false), options.format);
+        let converter = Converter::new(options.common.output, &options.rendering.options.spectrum);
+        let records = RecordWriter::new(&spec.fields, &converter, options.format);
         let log = Rc::new(RefCell::new(Vec::new()));
         let mut out = Watched(Rc::clone(&log), Vec::new(), 0);
         let rays = RayReader::new(input.as_bytes(), InputFormat::Ascii);

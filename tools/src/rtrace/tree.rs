@@ -1,7 +1,7 @@
 //! Ray trees: a line for every ray, indented by its depth.
 
 use super::record::RecordWriter;
-use crate::colour::Conversion;
+use crate::spectral::Converter;
 use ambit_cli::{RayOptions, TreeSpec};
 use ambit_render::{Names, Selection, TreeRay};
 
@@ -14,7 +14,7 @@ pub(crate) struct TreeWriter<'a> {
 
 impl<'a> TreeWriter<'a> {
     /// Writes what `spec` asks for of the rays that the options select.
-    pub(crate) fn new(spec: &'a TreeSpec, conversion: Conversion, options: &'a RayOptions) -> Self {
+    pub(crate) fn new(spec: &'a TreeSpec, conversion: &'a Converter, options: &'a RayOptions) -> Self {
         let record = RecordWriter::new(&spec.fields, conversion, options.format);
         Self { record, shadows: spec.shadows, selection: &options.tree }
     }

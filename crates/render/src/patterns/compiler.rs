@@ -5,6 +5,7 @@ use super::auxiliary::Auxiliary;
 use super::function_file::function_file;
 use crate::Error;
 use crate::prepare::{Definition, Environment};
+use crate::spectral::Spectrum;
 use ambit_base::Transform;
 use ambit_cal::{ChannelSet, Context, Host, Library, Program};
 use ambit_file::os_text;
@@ -26,6 +27,8 @@ pub(crate) struct Compiler<'e> {
     expressions: HashMap<(String, String), Arc<Program>>,
     functions: HashMap<(String, String, u32), Arc<Program>>,
     pub(crate) files: Auxiliary<'e>,
+    /// What spectral patterns are folded to.
+    pub(crate) spectrum: Spectrum,
 }
 
 /// Programs of one modifier with what they are evaluated in.
@@ -70,7 +73,7 @@ impl Functions {
 impl<'e> Compiler<'e> {
     /// A compiler that knows the prelude, the command line's definitions and the function files of `scene`. A
     /// `rayinit.cal` on the search path takes the place of the built-in prelude.
-    pub(crate) fn new(scene: &Scene, environment: &'e Environment<'e>) -> Result<Self, Error> {
+    pub(crate) fn new(scene: &Scene, environment: &'e Environment<'e>, spectrum: Spectrum) -> Result<Self, Error> {
         let bad = |e: ambit_cal::CompileError| Error::user(e.to_string());
         let library = match (environment.find)(PRELUDE) {
             Some(path) => {
@@ -88,6 +91,7 @@ impl<'e> Compiler<'e> {
             expressions: HashMap::new(),
             functions: HashMap::new(),
             files: Auxiliary::new(environment),
+            spectrum,
         };
         for definition in environment.definitions {
             match definition {

@@ -2,10 +2,10 @@
 
 mod auxiliary;
 mod builtin_font;
-mod cie;
 mod compiler;
 mod complaints;
 mod evaluate;
+mod folding;
 mod function_file;
 mod image;
 mod lettering;
@@ -15,7 +15,6 @@ mod pattern;
 mod site;
 mod spectral;
 mod spectral_image;
-mod spectrum;
 mod texture;
 
 pub(crate) use compiler::{Compiler, Functions, Recipe};

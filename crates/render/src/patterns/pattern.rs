@@ -31,6 +31,8 @@ pub(crate) enum Pattern {
     },
     /// spectrum, specfile.
     Constant(Rgb),
+    /// The same in several passes.
+    Constants(Box<[Rgb]>),
     /// specfunc, specdata, specpict.
     Spectral(Box<Spectral>),
 }
@@ -61,11 +63,16 @@ impl Pattern {
                 let colour = |i: usize| Rgb::new(r[i] as f32, r[i + 1] as f32, r[i + 2] as f32);
                 Ok(Self::Text { text, fore: colour(TEXT_COLOURS), back: colour(TEXT_COLOURS + 3) })
             }
-            Kind::Spectrum => spectral::spectrum(scene, id),
+            Kind::Spectrum => spectral::spectrum(scene, id, compiler),
             Kind::SpecFile => spectral::specfile(scene, id, compiler),
             Kind::SpecFunc | Kind::SpecData | Kind::SpecPict => Spectral::compile(scene, id, compiler),
             _ => Err(Error::unsupported(scene, id)),
         }
+    }
+
+    /// True if passes of a calculation by wavelength differ in it.
+    pub(crate) fn is_spectral(&self) -> bool {
+        matches!(self, Self::Constants(_) | Self::Spectral(_))
     }
 }
 
@@ -82,6 +89,10 @@ impl<O: Observer> Walk<'_, O> {
             }
             Pattern::Constant(colour) => {
                 finish.pattern *= *colour;
+                return;
+            }
+            Pattern::Constants(passes) => {
+                finish.pattern *= passes[self.tracer.pass];
                 return;
             }
             Pattern::Spectral(spectral) => self.spectral(ray, spectral).map(|c| c.as_dvec3().to_array()),

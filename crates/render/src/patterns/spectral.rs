@@ -1,13 +1,12 @@
-//! Spectral patterns in three channels: spectrum and specfile, which are the same everywhere, and specfunc, specdata
+//! Spectral patterns: spectrum and specfile, which are the same everywhere, and specfunc, specdata
 //! and specpict, whose spectra a function file shapes.
 
-use super::cie::{LONGEST, SHORTEST};
 use super::compiler::{Compiler, Functions, Recipe};
 use super::evaluate::{Failure, check};
+use super::folding::{Folding, Layout, MAX_BANDS};
 use super::lookup::point;
 use super::pattern::Pattern;
 use super::spectral_image::SpectralImage;
-use super::spectrum::{Folding, MAX_BANDS};
 use crate::Error;
 use crate::observer::Observer;
 use crate::ray::Ray;
@@ -22,7 +21,8 @@ use std::sync::Arc;
 pub(crate) struct Spectral {
     /// Coordinates, then the function of (value and) wavelength.
     functions: Functions,
-    folding: Folding,
+    /// One a pass.
+    foldings: Box<[Folding]>,
     data: Data,
 }
 
@@ -38,15 +38,14 @@ enum Data {
 }
 
 /// spectrum: its values stand in the scene.
-pub(crate) fn spectrum(scene: &Scene, id: ObjectId) -> Result<Pattern, Error> {
+pub(crate) fn spectrum(scene: &Scene, id: ObjectId, compiler: &Compiler<'_>) -> Result<Pattern, Error> {
     let [first, last, values @ ..] = scene.reals(id) else {
         return Err(Error::primitive(scene, id, "bad # arguments"));
     };
     if !((first - last).abs() > 0.0 && *first > 0.0 && *last > 0.0) {
         return Err(Error::primitive(scene, id, "bad wavelength limits"));
     }
-    let folding = Folding::even(*first, *last, values.len());
-    Ok(Pattern::Constant(folding.fold(values.iter().copied())))
+    Ok(constant(&Layout::even(*first, *last, values.len()), values, compiler))
 }
 
 /// specfile: its values stand in a data file.
@@ -56,39 +55,50 @@ pub(crate) fn specfile(scene: &Scene, id: ObjectId, compiler: &mut Compiler<'_>)
     let [axis] = table.axes() else {
         return Err(Error::primitive(scene, id, "data file must be 1-dimensional"));
     };
-    let values = table.values().iter().map(|&v| f64::from(v));
-    Ok(Pattern::Constant(axis_folding(axis).fold(values)))
+    let values: Vec<f64> = table.values().iter().map(|&v| f64::from(v)).collect();
+    Ok(constant(&axis_layout(axis), &values, compiler))
 }
 
-/// How values at the points of a wavelength axis fold.
-fn axis_folding(axis: &Axis) -> Folding {
+/// A spectrum that is the same everywhere.
+fn constant(layout: &Layout, values: &[f64], compiler: &Compiler<'_>) -> Pattern {
+    let fold = |folding: &Folding| folding.fold(values.iter().copied());
+    match &*layout.foldings(&compiler.spectrum) {
+        [one] => Pattern::Constant(fold(one)),
+        passes => Pattern::Constants(passes.iter().map(fold).collect()),
+    }
+}
+
+/// Where values at the points of a wavelength axis lie.
+fn axis_layout(axis: &Axis) -> Layout {
     match &axis.points {
-        None => Folding::even(f64::from(axis.begin), f64::from(axis.end), axis.count),
-        Some(points) => Folding::uneven(&points.iter().map(|&p| f64::from(p)).collect::<Vec<_>>()),
+        None => Layout::even(f64::from(axis.begin), f64::from(axis.end), axis.count),
+        Some(points) => Layout::uneven(&points.iter().map(|&p| f64::from(p)).collect::<Vec<_>>()),
     }
 }
 
 /// Wavelengths at which a table is looked up along its last axis: as many as it has points, but evenly spaced whatever
 /// these are. So Radiance does.
-fn sampled_axis(axis: &Axis) -> (Folding, Box<[f64]>) {
+fn sampled_axis(axis: &Axis) -> (Layout, Box<[f64]>) {
     let (a, b) = (f64::from(axis.begin), f64::from(axis.end));
     let wavelengths = (0..axis.count).map(|i| a + (b - a) * (i as f64 / (axis.count - 1) as f64)).collect();
-    (Folding::even(a, b, axis.count), wavelengths)
+    (Layout::even(a, b, axis.count), wavelengths)
 }
 
 impl Spectral {
     /// Compiles specfunc, specdata or specpict.
     pub(crate) fn compile(scene: &Scene, id: ObjectId, compiler: &mut Compiler<'_>) -> Result<Pattern, Error> {
-        let (coordinates, file, folding, data) = match scene.object(id).kind {
+        let spectrum = compiler.spectrum;
+        let (coordinates, file, layout, data) = match scene.object(id).kind {
             Kind::SpecFunc => {
                 let r = scene.reals(id);
                 let (shortest, longest) = (r[0].min(r[1]), r[0].max(r[1]));
-                if !(shortest < LONGEST && longest > SHORTEST && longest > shortest) {
+                let [red, .., blue] = spectrum.limits();
+                if !(shortest < red && longest > blue && longest > shortest) {
                     compiler.warn(&format!("incompatible wavelength sampling for {}", scene.describe(id)));
                     return Ok(Pattern::Constant(Rgb::ONE));
                 }
-                let (folding, wavelengths) = Folding::sampled(longest.min(LONGEST), shortest.max(SHORTEST));
-                (0, 1, folding, Data::None(wavelengths))
+                let (layout, wavelengths) = Layout::sampled(longest.min(red), shortest.max(blue), &spectrum);
+                (0, 1, layout, Data::None(wavelengths))
             }
             Kind::SpecData => {
                 let table = compiler.files.table(scene, id, &scene.string(id, 1).unwrap_or_default())?;
@@ -96,12 +106,12 @@ impl Spectral {
                 let [_, .., last] = axes else {
                     return Err(Error::primitive(scene, id, "need at least 2-dimensional data"));
                 };
-                let (folding, wavelengths) = sampled_axis(last);
-                (axes.len() - 1, 2, folding, Data::Table(table, wavelengths))
+                let (layout, wavelengths) = sampled_axis(last);
+                (axes.len() - 1, 2, layout, Data::Table(table, wavelengths))
             }
             _ => {
                 let image = compiler.files.spectral_image(scene, id, &scene.string(id, 1).unwrap_or_default())?;
-                (2, 2, image.folding(), Data::Image(image))
+                (2, 2, image.layout(), Data::Image(image))
             }
         };
         if scene.string_count(id) < file + 1 + coordinates {
@@ -112,10 +122,10 @@ impl Spectral {
         let recipe =
             Recipe { expressions: &expressions, functions: &[(0, arguments)], file, transform: file + 1 + coordinates };
         let functions = compiler.assemble(scene, id, &recipe)?.without_material()?;
-        Ok(Pattern::Spectral(Self { functions, folding, data }.into()))
+        Ok(Pattern::Spectral(Self { functions, foldings: layout.foldings(&spectrum), data }.into()))
     }
 
-    fn evaluate(&self, pass: &mut Pass<'_>) -> Result<Rgb, Failure> {
+    fn evaluate(&self, folding: &Folding, pass: &mut Pass<'_>) -> Result<Rgb, Failure> {
         let Some((function, coordinates)) = self.functions.programs.split_last() else {
             return Err(Failure::NoValue);
         };
@@ -134,8 +144,8 @@ impl Spectral {
             }
         };
         let folded = match &self.data {
-            Data::None(wavelengths) => self.folding.fold(wavelengths.iter().map(|&nm| call(&[nm]))),
-            Data::Table(table, wavelengths) => self.folding.fold(wavelengths.iter().map(|&nm| {
+            Data::None(wavelengths) => folding.fold(wavelengths.iter().map(|&nm| call(&[nm]))),
+            Data::Table(table, wavelengths) => folding.fold(wavelengths.iter().map(|&nm| {
                 point[coordinates.len()] = nm;
                 call(&[table.interpolate(&point), nm])
             })),
@@ -143,7 +153,7 @@ impl Spectral {
                 let mut values = [0.0; MAX_BANDS];
                 image.sample(point[0], point[1], &mut values);
                 let bands = values.iter().enumerate().take(image.bands());
-                self.folding.fold(bands.map(|(i, &v)| call(&[v, image.wavelength(i)])))
+                folding.fold(bands.map(|(i, &v)| call(&[v, image.wavelength(i)])))
             }
         };
         match failure {
@@ -155,8 +165,9 @@ impl Spectral {
 }
 
 impl<O: Observer> Walk<'_, O> {
-    /// RGB of a spectral pattern; None where it has no value.
+    /// The three channels of a spectral pattern in this pass; None where it has no value.
     pub(crate) fn spectral(&mut self, ray: &Ray<'_>, spectral: &Spectral) -> Option<Rgb> {
-        self.evaluate_with(ray, &spectral.functions, |pass| spectral.evaluate(pass))
+        let folding = &spectral.foldings[self.tracer.pass];
+        self.evaluate_with(ray, &spectral.functions, |pass| spectral.evaluate(folding, pass))
     }
 }

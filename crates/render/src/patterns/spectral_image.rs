@@ -1,7 +1,7 @@
 //! Hyperspectral pictures as data (scene.md 15.3): four to twenty-four bands a pixel, from long to short wavelengths.
 
+use super::folding::{Layout, MAX_BANDS};
 use super::image::picture_axes;
-use super::spectrum::{Folding, MAX_BANDS};
 use ambit_base::EPSILON;
 use ambit_file::{Header, Orientation, Resolution, decode_spectrum};
 use ambit_scene::Axis;
@@ -60,9 +60,9 @@ impl SpectralImage {
         self.range.0 + (self.range.1 - self.range.0) * ((band as f64 + 0.5) / self.bands as f64)
     }
 
-    /// How its bands fold to RGB.
-    pub(crate) fn folding(&self) -> Folding {
-        Folding::bands(self.range.0, self.range.1, self.bands)
+    /// Where its bands lie.
+    pub(crate) fn layout(&self) -> Layout {
+        Layout::bands(self.range.0, self.range.1, self.bands)
     }
 
     /// The spectrum at (u, v); of `values` the first are filled.

@@ -47,7 +47,11 @@ pub(crate) struct Modifiers {
 
 impl Modifiers {
     /// Compiles every modifier of `scene`. Faulty ones become [`Node::Unusable`]: only a ray that needs one fails.
-    pub(crate) fn compile(scene: &Scene, environment: &Environment<'_>) -> Result<Self, Error> {
+    pub(crate) fn compile(
+        scene: &Scene,
+        environment: &Environment<'_>,
+        spectrum: crate::Spectrum,
+    ) -> Result<Self, Error> {
         let last = scene.ids().rev().find(|&id| scene.object(id).kind.is_modifier()).map_or(0, |id| id as usize + 1);
         let mut all = Self {
             links: vec![NO_LINK; last],
@@ -57,7 +61,7 @@ impl Modifiers {
             blocks: vec![false; last],
             bends: vec![false; last],
         };
-        let mut compiler = crate::patterns::Compiler::new(scene, environment)?;
+        let mut compiler = crate::patterns::Compiler::new(scene, environment, spectrum)?;
         for id in 0..last as ObjectId {
             let object = scene.object(id);
             if !object.kind.is_modifier() {
@@ -139,6 +143,11 @@ impl Modifiers {
                 }
             }
         }
+    }
+
+    /// True if passes of a calculation by wavelength may differ in any of them.
+    pub(crate) fn spectral(&self) -> bool {
+        self.nodes.iter().any(|node| matches!(node, Node::Pattern(p) if p.is_spectral()))
     }
 
     /// True if surfaces of this modifier may send shadow rays off their line, or hide others from them.

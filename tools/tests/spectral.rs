@@ -1,0 +1,181 @@
+//! Calculations by wavelength as a script sees them: headers, pixels, pictures, what is refused. The numbers are answers of
+//! Radiance 6.0a.
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+const SCENE: &str = "void glow M 0 0 4 1 2 3 0\nM polygon f 0 0 12 -5 -5 0 5 -5 0 5 5 0 -5 5 0\n";
+/// Two spectra and three bounces of light.
+const ROOM: &str = "void spectrum P 0 0 8 400 700 .1 .15 .2 .3 .7 .8\nP plastic red 0 0 5 1 1 1 .02 .05\n\
+    void plastic white 0 0 5 .7 .7 .7 0 0\nvoid spectrum Q 0 0 8 400 700 .5 .6 .9 1 1.1 1.2\n\
+    Q light L 0 0 3 20 20 20\nwhite polygon floor 0 0 12 0 0 0 4 0 0 4 4 0 0 4 0\n\
+    red polygon left 0 0 12 0 0 0 0 4 0 0 4 3 0 0 3\nL polygon lamp 0 0 12 1.5 1.5 2.9 1.5 2.5 2.9 2.5 2.5 2.9 2.5 1.5 2.9\n";
+const DOWN: &[u8] = b"0 0 1 0 0 -1\n";
+const VIEW: &str = "-vp 0 0 1 -vd 0 0 -1 -vu 0 1 0 -x 1 -y 1";
+
+struct Bench(TempDir);
+
+impl Bench {
+    fn new(scene: &str) -> Self {
+        let bench = Self(tempfile::tempdir().unwrap());
+        std::fs::write(bench.0.path().join("scene.rad"), scene).unwrap();
+        let octree = bench.run(env!("CARGO_BIN_EXE_oconv"), "scene.rad", b"");
+        assert!(octree.status.success());
+        std::fs::write(bench.0.path().join("scene.oct"), octree.stdout).unwrap();
+        bench
+    }
+
+    fn run(&self, program: &str, line: &str, input: &[u8]) -> Output {
+        let mut command = Command::new(program);
+        command.args(line.split_whitespace()).current_dir(self.0.path()).stdin(Stdio::piped());
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        // A program that refuses its options reads nothing.
+        let _ = std::io::Write::write_all(&mut child.stdin.take().unwrap(), input);
+        child.wait_with_output().unwrap()
+    }
+
+    fn rtrace(&self, line: &str, input: &[u8]) -> Output {
+        self.run(env!("CARGO_BIN_EXE_rtrace"), &format!("{line} scene.oct"), input)
+    }
+
+    fn rpict(&self, line: &str) -> Output {
+        self.run(env!("CARGO_BIN_EXE_rpict"), &format!("{line} scene.oct"), b"")
+    }
+
+    fn exists(&self, name: &str) -> bool {
+        Path::new(self.0.path()).join(name).exists()
+    }
+}
+
+/// Lines of a header but for those that the octree, the command and the time make, and what follows it.
+fn split(output: &Output) -> (Vec<String>, Vec<u8>) {
+    let bytes = &output.stdout;
+    let end = bytes.windows(2).position(|w| w == b"\n\n").expect("a header ends with an empty line");
+    let head = String::from_utf8_lossy(&bytes[..end]).into_owned();
+    let kept = head.lines().skip_while(|l| !l.starts_with("GMT=")).skip(1).map(str::to_owned).collect();
+    (kept, bytes[end + 2..].to_vec())
+}
+
+fn numbers(bytes: &[u8]) -> Vec<f64> {
+    String::from_utf8_lossy(bytes).split_whitespace().map(|w| w.parse().unwrap()).collect()
+}
+
+#[test]
+fn headers_say_what_the_numbers_are() {
+    let bench = Bench::new(SCENE);
+    for (line, wanted) in [
+        ("-w -cs 9 -co+", &["NCOMP=9", "WAVELENGTH_SPLITS= 780 588 480 380", "FORMAT=ascii"][..]),
+        ("-w -cs 9", &["NCOMP=3", "FORMAT=ascii"]),
+        ("-w -co+", &["NCOMP=3", "FORMAT=ascii"]),
+        ("-w -cs 9 -co+ -faf", &["NCOMP=9", "WAVELENGTH_SPLITS= 780 588 480 380", "BigEndian=0", "FORMAT=float"]),
+        ("-w -cs 9 -co+ -fad", &["NCOMP=9", "WAVELENGTH_SPLITS= 780 588 480 380", "BigEndian=0", "FORMAT=double"]),
+        ("-w -cs 9 -co+ -fac", &["NCOMP=9", "WAVELENGTH_SPLITS= 780 588 480 380", "FORMAT=Radiance_spectra"]),
+        ("-w -cs 9 -fac", &["NCOMP=3", "FORMAT=32-bit_rle_rgbe"]),
+        ("-w -cs 6 -cw 600 700 -co+", &["NCOMP=6", "WAVELENGTH_SPLITS= 700 666.667 633.333 600", "FORMAT=ascii"]),
+        ("-w -cs 5 -co+ -osL", &["NCOMP=2", "WAVELENGTH_SPLITS= 780 588 480 380", "FORMAT=ascii"]),
+        ("-w -cs 9 -co+ -ovWrxlLw", &["NCOMP=39", "WAVELENGTH_SPLITS= 780 588 480 380", "FORMAT=ascii"]),
+        ("-w -pS -cs 9", &["NCOMP=1", "FORMAT=ascii"]),
+        (
+            "-w -pXYZ -cs 9",
+            &["NCOMP=3", "PRIMARIES= 1.0000 0.0000 0.0000 1.0000 0.0000 0.0000 0.3333 0.3333", "FORMAT=ascii"],
+        ),
+    ] {
+        let (head, _) = split(&bench.rtrace(line, DOWN));
+        let head: Vec<&str> = head.iter().map(|l| l.trim_end()).collect();
+        assert_eq!(head, wanted, "{line}");
+    }
+}
+
+#[test]
+fn binary_records_hold_all_bins() {
+    let bench = Bench::new(SCENE);
+    let pixel = bench.rtrace("-h -w -cs 9 -co+ -fac", DOWN).stdout;
+    assert_eq!(pixel, [0x40, 0x40, 0x40, 0x40, 0x80, 0x80, 0x80, 0xc0, 0xc0, 0x82]);
+    assert_eq!(bench.rtrace("-h -w -cs 9 -fac", DOWN).stdout, [0x55, 0x7e, 0xba, 0x82]);
+    let floats = bench.rtrace("-h -w -cs 4 -co+ -faf", DOWN).stdout;
+    assert_eq!(floats, [1f32, 1.0, 2.0, 3.0].map(f32::to_ne_bytes).concat());
+    assert_eq!(bench.rtrace("-h -w -cs 9 -co+ -fad", DOWN).stdout.len(), 72);
+    // A picture that Radiance's programs read.
+    let picture = bench.rtrace("-w -cs 9 -co+ -fac -x 1 -y 1", DOWN);
+    assert_eq!(split(&picture).1, [b"-Y        1 +X        1\n", &pixel[..]].concat());
+    // A ray without direction is black, and nothing is in its way.
+    assert_eq!(
+        numbers(&bench.rtrace("-h -w -cs 4 -co+ -ovW", b"0 0 1 0 0 0\n").stdout),
+        [0., 0., 0., 0., 1., 1., 1., 1.]
+    );
+}
+
+#[test]
+fn pictures_are_seen_in_colour() {
+    let bench = Bench::new(SCENE);
+    for (line, format, wanted) in [
+        ("-cs 6", "FORMAT=32-bit_rle_rgbe", [0.8029268, 2.100502, 3.170776]),
+        ("-cs 6 -cw 400 700", "FORMAT=32-bit_rle_rgbe", [1.200805, 2.068381, 3.118726]),
+        ("-cs 9 -pXYZ", "FORMAT=32-bit_rle_xyze", [321.4297, 333.3221, 494.2350]),
+        ("-cs 9 -pc .7 .3 .2 .7 .1 .1 .33 .33", "FORMAT=32-bit_rle_rgbe", [1.631215, 1.785644, 2.845118]),
+    ] {
+        let (head, data) = split(&bench.rpict(&format!("{VIEW} -w {line}")));
+        assert_eq!(head.last().map(String::as_str), Some(format), "{line}");
+        let code = &data[data.len() - 4..];
+        let unit = (f64::from(code[3]) - 136.0).exp2();
+        for (&m, w) in code.iter().zip(wanted) {
+            // A mantissa counts 256ths of the greatest channel's power of two.
+            assert!((f64::from(m) * unit - w).abs() <= unit, "{line}: {code:?} for {wanted:?}");
+        }
+    }
+}
+
+#[test]
+fn limits_and_options_are_refused_as_by_radiance() {
+    let bench = Bench::new(SCENE);
+    let says = |output: &Output| String::from_utf8_lossy(&output.stderr).into_owned();
+    for line in ["-cs 2", "-cs 9 -cw 500 549", "-cw 500 500", "-cs -1"] {
+        for output in [bench.rtrace(line, DOWN), bench.rpict(&format!("{VIEW} {line}"))] {
+            assert_eq!(output.status.code(), Some(1), "{line}");
+            assert!(says(&output).contains("fatal - unsupported spectral sampling"), "{line}: {}", says(&output));
+        }
+    }
+    // A range without the peaks shows no colours: a warning, an error, or nothing if bins are written.
+    let warning = "rtrace: warning - spectral range incompatible with color output";
+    for (line, warns) in [("-cs 6 -cw 600 700", true), ("-cw 600 700", true), ("-cs 6 -cw 600 700 -co+", false)] {
+        let output = bench.rtrace(&format!("-h {line}"), DOWN);
+        assert_eq!((output.status.code(), says(&output).contains(warning)), (Some(0), warns), "{line}");
+    }
+    let refused = bench.rpict(&format!("{VIEW} -cs 6 -cw 600 700"));
+    assert!(says(&refused).starts_with("rpict: fatal - unsupported spectral sampling"), "{}", says(&refused));
+    assert!(says(&bench.rpict(&format!("{VIEW} -cs 9 -co+"))).contains("command line error at '-co+'"));
+    let refused = bench.rtrace("-cs 9 -otdv", DOWN);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(says(&refused).contains("ray trees (-otdv) with -cs above 3 are not supported"), "{}", says(&refused));
+    // More than 24 bins are 24.
+    assert_eq!(numbers(&bench.rtrace("-h -w -cs 40 -co+", DOWN).stdout).len(), 24);
+}
+
+#[test]
+fn ambient_files_are_refused() {
+    let bench = Bench::new(SCENE);
+    for output in [bench.rtrace("-cs 9 -af x.amb -ab 1", DOWN), bench.rpict(&format!("{VIEW} -cs 9 -af x.amb -ab 1"))] {
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1));
+        assert!(text.contains("-af x.amb") && text.contains("-cs") && text.contains("not supported"), "{text}");
+        assert!(!bench.exists("x.amb"));
+    }
+}
+
+#[test]
+fn bins_do_not_depend_on_threads_or_on_what_is_written() {
+    let bench = Bench::new(ROOM);
+    let rays = b"1 1 1 -1 .2 0\n2 1 1 0 .3 -1\n3 2 1 -1 0 -.5\n1 3 2 .1 0 -1\n".repeat(8);
+    let run = |line: &str| bench.rtrace(&format!("-h -w -u- -ab 2 -aa .2 -ad 64 -as 0 -ar 32 {line}"), &rays).stdout;
+    let bins = run("-cs 5 -co+ -n 1");
+    assert_eq!(numbers(&bins).len(), 32 * 5);
+    assert!(bins == run("-cs 5 -co+ -n 3"), "-n 3 differs from -n 1");
+    // The mean of the bins is their mean.
+    let means = numbers(&run("-cs 5 -pA"));
+    for (five, mean) in numbers(&bins).chunks(5).zip(means) {
+        assert!((five.iter().sum::<f64>() / 5.0 - mean).abs() <= 2e-6 * mean.max(1.0), "{five:?} {mean}");
+    }
+    // The red wall reflects long waves more than short ones, which all passes agree on.
+    assert!(numbers(&bins).chunks(5).all(|b| b[1] > b[3]), "no wall is red");
+}
