@@ -6,7 +6,7 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|data: &[u8]| {
     match scan(data, "fuzz.amb") {
-        Ok(contents) => assert!(contents.records.len() * 4 <= data.len()),
+        Ok(contents) => assert!(contents.records.len() * 67 <= data.len()),
         Err(error) => assert!(!error.is_empty()),
     }
 });

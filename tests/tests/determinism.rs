@@ -4,7 +4,7 @@
 use ambit_tests::programs::foreign;
 use ambit_tests::{Fixture, Program};
 
-/// Numbers of threads: one, those of this machine, an odd one, more than it has, many more.
+/// Numbers of threads: one, a few, an odd number, and more than most machines have processors.
 const THREADS: [u32; 5] = [1, 2, 3, 8, 64];
 const LIGHT: &str = "-ab 2 -ad 128 -as 32 -aa .2 -ar 32 -ds .2 -dj .5 -ss 1";
 

@@ -8,10 +8,10 @@
 //! Per cell of a grid and level, this counts the misses and how they were settled: by a record of their own, or by that
 //! of another. Once more than half took one of their own, misses are answered by hemispheres of 1/[`RENT`] of the samples.
 //! Nobody knows how many questions are still to come, and with enough of them even hair is worth covering. So it is
-//! decided as one decides between renting and buying: each record made allows
-//! as many samples that are not kept, and when these are used up, the next miss gets a record. Whatever comes, it takes at most twice the samples of what would
-//! have been better; and a region that is but newly seen, where almost every miss makes a record, too, gets its records
-//! in the end.
+//! decided as one decides between renting and buying: each record made allows as many samples that are not kept, and when
+//! these are used up, the next miss gets a record. Whatever comes, it takes at most twice the samples of what would have
+//! been better; and a region that is but newly seen, where almost every miss makes a record, too, gets its records in the
+//! end.
 //!
 //! All is counted between rounds, in the order of the list, so that it depends neither on threads nor on time; look-ups
 //! know nothing of it.

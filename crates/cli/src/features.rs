@@ -18,8 +18,13 @@ pub const COMMON_FEATURES: &[&str] = &[
     "MaterialMixtures",
     "Antimatter",
     "BackFaceVisibility",
+    "ScatteringModels=WGMD,Ashikhmin-Shirley",
+    "TabulatedBSDFs=DataFile,KlemsXML,TensorTreeXML,+ViewPeakExtraction",
     "Instancing=Octree,TriangleMesh",
     "Aliases",
+    "Hyperspectral",
+    "ShadowCache",
+    "ParticipatingMedia=Mist",
 ];
 
 /// What `rpict` can do besides.
@@ -56,7 +61,7 @@ pub const RAY_FEATURES: &[&str] = &[
     "InputFormats=a,f,d",
     "OutputFormats=a,f,d,c",
     "Outputs=o,d,v,V,w,W,l,L,c,p,n,N,s,m,M,r,x,R,X,~",
-    "OutputCS=RGB,XYZ,Y,S,M,prims",
+    "OutputCS=RGB,XYZ,Y,S,M,prims,spec",
 ];
 
 impl Features {
@@ -111,6 +116,8 @@ mod tests {
         for (wanted, text, missing) in [
             ("Outp", "OutputFormats=a,f,d,c\n", None),
             ("Aliases", "", None),
+            ("Hyperspectral", "", None),
+            ("OutputCS=spec", "", None),
             ("V", "", None),
             ("Outputs=v,l", "", None),
             ("Outputs=v,q", "", Some("missing feature - Outputs=v,q")),

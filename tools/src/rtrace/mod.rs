@@ -79,6 +79,10 @@ impl Job {
         if spec.tree.is_some() && !spectrum.is_rgb() {
             return Err(Failure::unsupported(&format!("ray trees (-o{}) with -cs above 3 are", options.fields)).into());
         }
+        if spec.tree.is_some() && options.rendering.options.ambient.unbounded {
+            let what = format!("ray trees (-o{}) with --unbounded-bounces (or --unbiased) are", options.fields);
+            return Err(Failure::unsupported(&what).into());
+        }
         if options.format == OutputFormat::Colour {
             if spec.tree.is_some() || !matches!(spec.fields[..], [Field::Value | Field::Mirrored | Field::Unmirrored]) {
                 return Err(Failure::user("color format only with -ov, -or, -ox").into());

@@ -133,8 +133,10 @@ fn show(
     let mut written = Ok(());
     let answer = light.trace_tree(request, &mut |ray, names| {
         tree.write(bytes, ray, names);
-        if bytes.len() >= BUFFER && written.is_ok() {
-            written = out.write_all(bytes);
+        if bytes.len() >= BUFFER {
+            if written.is_ok() {
+                written = out.write_all(bytes);
+            }
             bytes.clear();
         }
     })?;
