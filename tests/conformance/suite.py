@@ -44,7 +44,7 @@ CACHED_SENSORS = "-ab 2 -aa .15 -ar 32 -ad 400 -as 100 -dj 0 -ds .1 -lw 1e-4 -lr
 # A converged picture that takes longer is given up; the cached pictures are then compared with each other.
 PATIENCE = 120
 
-# Runs of ours that are averaged where one fails.
+# Runs of either side that are averaged where one fails.
 SEEDS = 8
 # Greatest relative difference of means.
 MEAN = 0.01
@@ -136,6 +136,7 @@ def random(check, ours, theirs, reference, get, count):
     if line.verdict == "FAILS" and count < SEEDS:
         # One run's mean scatters by more than the limit in small pictures of few records: several tell.
         a += runs(ours, count, SEEDS, lambda more: get(ours, more))
+        b += runs(theirs, count, SEEDS, lambda more: get(theirs, more))
         line = judge(check, a, b, reference)
     return line
 
