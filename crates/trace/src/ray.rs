@@ -39,7 +39,7 @@ pub struct Rank {
     pub opacity: Opacity,
     /// The immediate modifier; of two in the same class and orientation the one defined later wins.
     pub modifier: ObjectId,
-    /// Surely stops every shadow ray, whatever its direction. Only for opaque surfaces.
+    /// Surely stops every shadow ray, whatever its direction: opaque surfaces, and transparent ones that only scatter.
     pub blocks: bool,
     /// Can send shadow rays off their line, or make other surfaces invisible to them (dielectric, antimatter …).
     pub bends: bool,

@@ -5,6 +5,7 @@ use crate::observer::Observer;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{DVec3, EPSILON, Rgb};
+use ambit_trace::Hit;
 
 /// Arguments of glass.
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +48,20 @@ impl Glass {
 }
 
 impl<O: Observer> Walk<'_, O> {
+    /// The share of a shadow ray that passes a pane of nothing but glass; None if the hit is something else.
+    #[inline]
+    pub(crate) fn through_pane(&self, hit: &Hit) -> Option<Rgb> {
+        let m = self.tracer.scene.modifiers.plain_glass(hit.modifier).filter(|_| hit.tilt == DVec3::ZERO)?;
+        if hit.cosine <= 0.0 && !self.tracer.options.back_visible {
+            return Some(Rgb::ONE);
+        }
+        Some(if m.transmissivity.max_element() < LEAST {
+            Rgb::ZERO
+        } else {
+            m.fractions(hit.cosine.abs().max(EPSILON)).0
+        })
+    }
+
     pub(crate) fn glass(&mut self, ray: &mut Ray<'_>, m: &Glass, finish: Finish) -> bool {
         if ray.cosine() <= 0.0 && !self.tracer.options.back_visible {
             return false;

@@ -93,10 +93,10 @@ impl Material {
         if transparent { Opacity::Transparent } else { Opacity::Opaque }
     }
 
-    /// True if it stops every shadow ray that is not aimed at it.
-    pub(crate) fn blocks(&self) -> bool {
+    /// True if it stops every shadow ray that is not aimed at it; `back_visible` is the switch `-bv`.
+    pub(crate) fn blocks(&self, back_visible: bool) -> bool {
         match self {
-            Self::Normal(m) => m.kind != NormalKind::Trans,
+            Self::Normal(m) => m.kind != NormalKind::Trans || back_visible && !m.transmits_beams(),
             Self::Light(m) => m.blocks(),
             Self::Anisotropic(_) | Self::Ashikhmin(_) | Self::Function(_) | Self::Prism(_) => true,
             Self::Brtd(m) => !m.transmits,

@@ -61,8 +61,17 @@ struct Split {
 }
 
 impl Normal {
+    /// True for trans that lets part of a beam through as a beam, which only smooth ones do.
+    pub(crate) fn transmits_beams(&self) -> bool {
+        self.is_smooth() && self.transmission * self.transmitted_specular > EPSILON
+    }
+
+    fn is_smooth(&self) -> bool {
+        self.roughness * self.roughness <= EPSILON
+    }
+
     fn split(&self, colour: Rgb, cosine: f64) -> Split {
-        let smooth = self.roughness * self.roughness <= EPSILON;
+        let smooth = self.is_smooth();
         let fresnel_applies = smooth && self.specular >= FRESNEL_FROM;
         let f = if fresnel_applies { fresnel(cosine) } else { 0.0 };
         let reflected = self.specular + f * (1.0 - self.specular);

@@ -48,7 +48,7 @@ impl Prepared {
     /// Compiles a loaded scene for the given options.
     pub(crate) fn new(loaded: Loaded, options: &Options, environment: &Environment<'_>) -> Result<Self, Error> {
         let Loaded { mut scene, top_level, volumes, cube, .. } = loaded;
-        let modifiers = Modifiers::compile(&scene, environment, options.spectrum)?;
+        let modifiers = Modifiers::compile(&scene, environment, options)?;
         let sources = crate::sources::find_sources(
             &scene,
             top_level.clone(),

@@ -1,9 +1,9 @@
 //! Modifiers compiled once: each primitive that can modify a surface becomes a node and the modifier it goes on with.
 
 use super::{Environment, compile_material};
-use crate::Error;
-use crate::materials::Material;
+use crate::materials::{Glass, Material};
 use crate::patterns::{Mixture, Pattern, Texture};
+use crate::{Error, Options};
 use ambit_scene::{Class, Kind, ObjectId, Scene, VOID};
 use ambit_trace::Opacity;
 
@@ -47,11 +47,7 @@ pub(crate) struct Modifiers {
 
 impl Modifiers {
     /// Compiles every modifier of `scene`. Faulty ones become [`Node::Unusable`]: only a ray that needs one fails.
-    pub(crate) fn compile(
-        scene: &Scene,
-        environment: &Environment<'_>,
-        spectrum: crate::Spectrum,
-    ) -> Result<Self, Error> {
+    pub(crate) fn compile(scene: &Scene, environment: &Environment<'_>, options: &Options) -> Result<Self, Error> {
         let last = scene.ids().rev().find(|&id| scene.object(id).kind.is_modifier()).map_or(0, |id| id as usize + 1);
         let mut all = Self {
             links: vec![NO_LINK; last],
@@ -61,7 +57,7 @@ impl Modifiers {
             blocks: vec![false; last],
             bends: vec![false; last],
         };
-        let mut compiler = crate::patterns::Compiler::new(scene, environment, spectrum)?;
+        let mut compiler = crate::patterns::Compiler::new(scene, environment, options.spectrum)?;
         for id in 0..last as ObjectId {
             let object = scene.object(id);
             if !object.kind.is_modifier() {
@@ -75,7 +71,7 @@ impl Modifiers {
                 Link { node: all.nodes.len() as u32 - 1, definition: id, next: object.modifier }
             };
             all.links[id as usize] = link;
-            all.classify(scene, id);
+            all.classify(scene, id, options.back_visible);
         }
         all.clear_clipped(scene);
         Ok(all)
@@ -105,7 +101,7 @@ impl Modifiers {
     }
 
     /// Finds the opacity class of a chain that starts at `id`; its links are already there.
-    fn classify(&mut self, scene: &Scene, id: ObjectId) {
+    fn classify(&mut self, scene: &Scene, id: ObjectId, back_visible: bool) {
         let link = self.links[id as usize];
         self.bends[id as usize] = match &self.nodes[link.node as usize] {
             Node::Material(m) => m.bends(),
@@ -113,7 +109,7 @@ impl Modifiers {
             _ => self.bends(link.next),
         };
         let (opacity, blocks) = match &self.nodes[link.node as usize] {
-            Node::Material(m) => (m.opacity(), m.blocks()),
+            Node::Material(m) => (m.opacity(), m.blocks(back_visible)),
             Node::Mixture(m) if m.sides.iter().any(|&side| self.has_material(side)) => (Opacity::Opaque, false),
             Node::Unusable(_) => match scene.object(link.definition).kind.class() {
                 Class::Material | Class::Mixture => (Opacity::Opaque, false),
@@ -160,6 +156,15 @@ impl Modifiers {
     pub(crate) fn get(&self, id: ObjectId) -> (&Node, ObjectId, ObjectId) {
         let link = self.links[id as usize];
         (&self.nodes[link.node as usize], link.definition, link.next)
+    }
+
+    /// The glass that a modifier is, if nothing modifies that.
+    #[inline]
+    pub(crate) fn plain_glass(&self, id: ObjectId) -> Option<&Glass> {
+        match self.links.get(id as usize).map(|link| (&self.nodes[link.node as usize], link.next)) {
+            Some((Node::Material(Material::Glass(m)), VOID)) => Some(m),
+            _ => None,
+        }
     }
 
     /// The material that the primitive `id` was compiled to.

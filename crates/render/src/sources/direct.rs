@@ -246,13 +246,24 @@ impl<O: Observer> Walk<'_, O> {
             !O::ACTIVE && ray.clipped == 0 && ray.next_clipped == 0 && ray.limit >= FAR && source.image.is_none();
         let mut found = None;
         if plain {
-            self.work.rays += 1;
-            let query = ambit_trace::Ray { origin: ray.point, direction, limit: FAR };
+            let mut query = ambit_trace::Ray { origin: ray.point, direction, limit: FAR };
             let target = if matches!(source.emitter, Emitter::Distant) { None } else { Some(source.object) };
-            match tracer.scene.world.shadow(&query, target) {
-                Shadow::Reaches => return Some(candidate.potential),
-                Shadow::Blocked(_) => return None,
-                Shadow::Other(hit) => found = Some(hit),
+            let mut panes = Rgb::ONE;
+            loop {
+                self.work.rays += 1;
+                match tracer.scene.world.shadow(&query, target) {
+                    Shadow::Reaches => return Some(candidate.potential * panes),
+                    Shadow::Blocked(_) => return None,
+                    Shadow::Other(hit) => {
+                        found = found.or(Some(hit));
+                        let Some(k) = self.through_pane(&hit) else { break };
+                        panes *= k;
+                        if panes == Rgb::ZERO {
+                            return None;
+                        }
+                        query.origin += direction * hit.distance;
+                    }
+                }
             }
         }
         let behind = ray.hit.as_ref().is_some_and(|h| h.normal.dot(direction) * h.normal.dot(ray.direction) > 0.0);
