@@ -149,10 +149,22 @@ pub(crate) fn accumulate<S: Sampler>(
     weight
 }
 
+/// Tangents of 11.25°, 22.5° and 33.75°.
+const TANGENTS: [f32; 3] = [0.198_912_37, 0.414_213_57, 0.668_178_6];
+
 /// The corral sector of a tangential vector: 32 of 11.25° each, from `u` towards `v`.
 #[inline]
 pub(crate) fn sector(u: f32, v: f32) -> u32 {
-    sector_of_angle(f64::from(v).atan2(f64::from(u)))
+    let (a, b) = (u.abs(), v.abs());
+    let (low, high) = (a.min(b), a.max(b));
+    let within = TANGENTS.into_iter().map(|t| u32::from(low > t * high)).sum::<u32>();
+    let in_quadrant = if b >= a && high > 0.0 { 7 - within } else { within };
+    match (u < 0.0, v < 0.0) {
+        (false, false) => in_quadrant,
+        (true, false) => 15 - in_quadrant,
+        (true, true) => 16 + in_quadrant,
+        (false, true) => 31 - in_quadrant,
+    }
 }
 
 /// The corral sector of an azimuth in radians, of any sign.
@@ -180,4 +192,21 @@ fn fenced<S: Sampler>(delta: DVec3, place: &Place, sampler: &S, query: &Query<S:
         return false;
     }
     sampler.occluded(query, query.position, to_record + normal * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{sector, sector_of_angle};
+
+    #[test]
+    fn sectors_of_vectors_are_those_of_their_azimuths() {
+        for k in 0..10_000 {
+            let azimuth = (f64::from(k) + 0.3) * (std::f64::consts::TAU / 10_000.0);
+            for length in [1e-20f32, 3.7, 1e15] {
+                let (u, v) = (azimuth.cos() as f32 * length, azimuth.sin() as f32 * length);
+                assert_eq!(sector(u, v), sector_of_angle(azimuth), "at {azimuth} times {length}");
+            }
+        }
+        assert_eq!(sector(0.0, 0.0), 0);
+    }
 }

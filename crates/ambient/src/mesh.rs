@@ -32,6 +32,23 @@ pub(crate) struct Derivatives {
     pub(crate) hessian: [f64; 3],
 }
 
+/// Squared tangents below this are left to the series.
+const SMALL_TANGENT: f64 = 1.0 / 16.0;
+
+/// γ/|c|, where γ is the angle between vectors whose cross product c has the square `c2` and whose dot product is `dot`.
+#[inline]
+fn angle_over_sine(c2: f64, dot: f64) -> f64 {
+    let t2 = c2 / (dot * dot);
+    if dot > 0.0 && t2 < SMALL_TANGENT {
+        // Edges of a fine mesh are seen under small angles: arctan(t)/t to the last digit.
+        let series = (0..13).rev().fold(0.0, |sum, k| 1.0 / f64::from(2 * k + 1) - sum * t2);
+        return series / dot;
+    }
+    // The arctangent of two arguments keeps all digits at small and at right angles.
+    let length = c2.sqrt();
+    length.atan2(dot) / length
+}
+
 impl Derivatives {
     /// Adds `weight` times the contribution of the edge from `r` to `s`.
     pub(crate) fn add_edge(&mut self, r: DVec3, s: DVec3, weight: f64) {
@@ -42,9 +59,7 @@ impl Derivatives {
             return;
         }
         let (er, es) = (e.dot(r), e.dot(s));
-        let length = c2.sqrt();
-        // The arctangent of two arguments keeps all digits at small and at right angles.
-        let i1 = length.atan2(r.dot(s)) / length;
+        let i1 = angle_over_sine(c2, r.dot(s));
         let (ir2, is2, ic2, ie2) = (1.0 / r2, 1.0 / s2, 1.0 / c2, 1.0 / e2);
         let i2 = (es * is2 - er * ir2 + e2 * i1) * (0.5 * ic2);
         let j2 = (0.5 * (ir2 - is2) - er * i2) * ie2;
@@ -192,6 +207,20 @@ mod tests {
     fn rectangle(x: f64, y: f64, scale: f64) -> Derivatives {
         let corner = |a: f64, b: f64| DVec3::new(a - x, b - y, 1.0) * scale;
         polygon(&[corner(-1.0, -0.5), corner(1.0, -0.5), corner(1.0, 0.5), corner(-1.0, 0.5)])
+    }
+
+    #[test]
+    fn small_angles_keep_their_digits() {
+        for k in 1..400 {
+            let angle = 1e-9 * 1.055f64.powi(k);
+            if angle < 3.0 {
+                for size in [1e-7, 1.0, 1e9] {
+                    let (sin, cos) = angle.sin_cos();
+                    let got = angle_over_sine((size * sin).powi(2), size * cos) * size;
+                    assert!((got / (angle / sin) - 1.0).abs() < 4e-15, "{angle}: {got}");
+                }
+            }
+        }
     }
 
     fn close(got: f64, expected: f64, tolerance: f64) {

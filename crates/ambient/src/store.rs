@@ -1,8 +1,8 @@
 //! The octree of records, independent of surfaces.
 //!
 //! A record's size class is the depth at which cells have one to two times its reach (Ward, Rubinstein, Clear 1988). It
-//! is listed one level above that, in every cell that its reach touches (at most eight), so that a look-up follows one
-//! path from the root to a leaf and reads one list a level.
+//! is listed in every cell of that depth that its reach touches, so that a look-up follows one path from the root to a
+//! leaf and reads one list a level.
 //!
 //! Everything lies in flat arrays: the lists are runs of columns that are compared several records at a time; what
 //! passes is tested on the record itself, and its value read last.
@@ -12,7 +12,7 @@ use crate::params::Limits;
 use crate::record::Record;
 use crate::sampler::{Query, Sampler};
 use crate::sieve::{Block, LANES, Mark, Probe};
-use ambit_base::{DVec3, Rgb};
+use ambit_base::{DVec3, Rgb, Vec3};
 
 /// Weight from which the records of smaller cells suffice and longer-reaching ones are not searched.
 const GOOD_ENOUGH: f32 = 0.05;
@@ -38,6 +38,7 @@ pub(crate) struct Place {
 
 /// What a record answers: read once it qualifies.
 #[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
 pub(crate) struct Derived {
     pub(crate) gradient: [f32; 2],
     pub(crate) rotation: [f32; 2],
@@ -117,7 +118,7 @@ impl Store {
     pub(crate) fn insert(&mut self, record: &Record, accuracy: f64) -> bool {
         let reach = f64::from(record.radii[1]) * accuracy;
         let (mut edge, mut depth) = (self.edge, 0u32);
-        while edge * 0.25 > reach && depth < MAX_DEPTH {
+        while edge * 0.5 > reach && depth < MAX_DEPTH {
             edge *= 0.5;
             depth += 1;
         }
@@ -131,14 +132,25 @@ impl Store {
         // Cells are found by halving in look-ups and by division here: the margin covers the difference.
         let margin = DVec3::splat(reach * (1.0 + MARGIN) + self.edge * MARGIN);
         let last = (1u64 << depth) - 1;
-        let cell = |p: DVec3| ((p - self.corner) / edge).to_array().map(|c| (c.max(0.0) as u64).min(last));
+        let corner = self.corner;
+        let cell = |p: DVec3| ((p - corner) / edge).to_array().map(|c| (c.max(0.0) as u64).min(last));
         let (low, high) = (cell(record.position - margin), cell(record.position + margin));
+        // Distance along one axis to the cells with one index; those at the border reach on without end.
+        let off = |axis: usize, index: u64| {
+            let c = record.position[axis] - (corner[axis] + index as f64 * edge);
+            let below = if index == 0 { 0.0 } else { -c };
+            let above = if index == last { 0.0 } else { c - edge };
+            below.max(above).max(0.0)
+        };
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
+                    if DVec3::new(off(0, x), off(1, y), off(2, z)).length_squared() > margin.x * margin.x {
+                        continue;
+                    }
                     let node = self.cell([x, y, z], depth);
-                    let corner = self.corner + DVec3::new(x as f64, y as f64, z as f64) * edge;
-                    self.list(node, id, record.position - corner, reach);
+                    let corner = corner + DVec3::new(x as f64, y as f64, z as f64) * edge;
+                    self.list(node, id, record.position - corner, edge, reach);
                 }
             }
         }
@@ -164,8 +176,9 @@ impl Store {
             node = &self.nodes[node.children as usize + upper.bitmask() as usize];
         }
         let close = DUPLICATE * accuracy * f64::from(record.radii[0]);
-        self.listed(node).any(|i| {
-            let p = &self.places[i as usize];
+        let probe = Probe::new(record.position - corner, edge, Vec3::from_array(place.normal), 0.0);
+        self.run_of(node).iter().flat_map(|block| block.candidates(&probe)).any(|id| {
+            let p = &self.places[id as usize];
             p.level == place.level
                 && p.weight == place.weight
                 && p.normal == place.normal
@@ -187,19 +200,34 @@ impl Store {
         node
     }
 
-    /// The records of a node's list, in order.
-    fn listed(&self, node: &Node) -> impl Iterator<Item = u32> {
-        let start = node.start as usize;
-        (0..node.len as usize).map(move |i| self.blocks[start + i / LANES].id(i % LANES))
+    /// The blocks of a node's list.
+    #[inline]
+    fn run_of(&self, node: &Node) -> &[Block] {
+        &self.blocks[node.start as usize..][..(node.len as usize).div_ceil(LANES)]
     }
 
-    /// Enters a record in a node's list: level ascending, weight descending, a new record before its equals.
-    fn list(&mut self, node: usize, id: u32, relative: DVec3, reach: f64) {
+    /// The records of a node's list, in order.
+    fn listed(&self, node: &Node) -> impl Iterator<Item = u32> {
+        let blocks = self.run_of(node);
+        (0..node.len as usize).map(|i| blocks[i / LANES].id(i % LANES))
+    }
+
+    /// Enters a record in a node's list: level ascending, weight descending, a new record after its equals.
+    fn list(&mut self, node: usize, id: u32, relative: DVec3, edge: f64, reach: f64) {
         let place = self.places[id as usize];
         let key = |p: &Place| (p.level, -p.weight);
-        let at = self.listed(&self.nodes[node]).take_while(|&i| key(&self.places[i as usize]) < key(&place)).count();
         let Node { start, len, capacity, .. } = self.nodes[node];
         let (len, mut first) = (len as usize, start as usize);
+        let (mut at, mut end) = (0, len);
+        while at < end {
+            let middle = at.midpoint(end);
+            let other = self.blocks[first + middle / LANES].id(middle % LANES);
+            if key(&self.places[other as usize]) <= key(&place) {
+                at = middle + 1;
+            } else {
+                end = middle;
+            }
+        }
         if len == capacity as usize * LANES {
             let grown = (capacity * 2).max(1);
             let fresh = self.run(grown);
@@ -219,8 +247,12 @@ impl Store {
             let mark = self.blocks[first + i / LANES].mark(i % LANES);
             self.blocks[first + (i + 1) / LANES].set((i + 1) % LANES, mark);
         }
-        self.blocks[first + at / LANES].set(at % LANES, Mark::new(relative, place.normal, reach, id));
+        let mark = Mark::new(relative, edge, Vec3::from_array(place.normal), reach, id);
+        self.blocks[first + at / LANES].set(at % LANES, mark);
         self.nodes[node].len += 1;
+        for block in &mut self.blocks[first + at / LANES..=first + len / LANES] {
+            block.set_level(self.places[block.id(0) as usize].level);
+        }
     }
 
     /// A run of vacant blocks, a power of two.
@@ -269,7 +301,7 @@ impl Store {
         let mut found = Vec::new();
         let mut weight = 0.0;
         for (node, edge) in path.into_iter().rev() {
-            if weight >= GOOD_ENOUGH && 0.25 * edge * limits.accuracy > limits.min_radius {
+            if weight >= GOOD_ENOUGH && 0.5 * edge * limits.accuracy > limits.min_radius {
                 break;
             }
             let Some(first) = self.listed(&node).next() else { continue };
@@ -314,28 +346,26 @@ impl<S: Sampler> Search<'_, S> {
             let next = &self.store.nodes[child];
             if next.children != 0 || next.len != 0 {
                 weight = self.node(child, DVec3::select(upper, middle, corner), half, sum);
-                // The list holds records of the class whose cells have half this node's edge.
-                if weight >= GOOD_ENOUGH && 0.5 * half * self.limits.accuracy > self.limits.min_radius {
+                if weight >= GOOD_ENOUGH && half * self.limits.accuracy > self.limits.min_radius {
                     return weight;
                 }
             }
         }
-        if node.len == 0 { weight } else { weight + self.list(node, corner, sum) }
+        if node.len == 0 { weight } else { weight + self.list(node, corner, edge, sum) }
     }
 
-    fn list(&self, node: Node, corner: DVec3, sum: &mut Sum) -> f32 {
+    fn list(&self, node: Node, corner: DVec3, edge: f64, sum: &mut Sum) -> f32 {
         let store = self.store;
-        let start = node.start as usize;
-        let blocks = &store.blocks[start..start + (node.len as usize).div_ceil(LANES)];
-        let first = &store.places[blocks[0].id(0) as usize];
-        let angle = self.asked.angle_for(first.level);
-        let probe = Probe::new(self.query.position - corner, self.asked.normal, angle);
+        let blocks = store.run_of(&node);
+        let angle = self.asked.angle_for(blocks[0].level());
+        let probe = Probe::new(self.query.position - corner, edge, self.asked.normal, angle);
         let mut weight = 0.0;
         for block in blocks {
-            let mut passing = block.passing(&probe);
-            while passing != 0 {
-                let id = block.id(passing.trailing_zeros() as usize & (LANES - 1)) as usize;
-                passing &= passing - 1;
+            if block.level() > self.asked.level {
+                break;
+            }
+            for id in block.candidates(&probe) {
+                let id = id as usize;
                 let place = &store.places[id];
                 let deeper = place.level > self.asked.level;
                 if deeper || place.level == self.asked.level && place.weight < self.asked.least_weight {
