@@ -32,7 +32,7 @@ fn write(folder: &Path, wanted: usize, world: &World, sets: &[Set]) -> std::io::
     let mut out = create(folder.join("triangles"))?;
     let mut failed = None;
     let mut triangle = |t: [ambit_base::DVec3; 3]| {
-        for x in t.iter().flat_map(|p| p.to_array()) {
+        for x in t.iter().flat_map(ambit_base::DVec3::to_array) {
             failed = out.write_all(&(x as f32).to_le_bytes()).err().or(failed.take());
         }
     };

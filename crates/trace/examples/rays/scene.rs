@@ -20,7 +20,7 @@ fn single(p: DVec3) -> DVec3 {
     p.as_vec3().as_dvec3()
 }
 
-/// Random numbers, the same everywhere (SplitMix64).
+/// Random numbers, the same everywhere (`SplitMix64`).
 pub(crate) struct Rng(pub(crate) u64);
 
 impl Rng {
