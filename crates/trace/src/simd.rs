@@ -83,17 +83,25 @@ mod present {
             match node::kind(word) {
                 TRIANGLES => {
                     let block = &w.triangles[index];
-                    let lanes = facets(block, of, df, s.best.bound());
-                    s.take(word, block, lanes);
+                    if let Some(lanes) = facets(block, of, df, s.best.bound()) {
+                        s.take(word, block, lanes);
+                        return Some(s.reach(&entry));
+                    }
+                    None
                 }
                 QUADS => {
                     let block = &w.quads[index];
-                    let lanes = facets(block, of, df, s.best.bound());
-                    s.take(word, block, lanes);
+                    if let Some(lanes) = facets(block, of, df, s.best.bound()) {
+                        s.take(word, block, lanes);
+                        return Some(s.reach(&entry));
+                    }
+                    None
                 }
-                _ => s.item(word, index),
+                _ => {
+                    s.item(word, index);
+                    Some(s.reach(&entry))
+                }
             }
-            s.reach(&entry)
         });
     }
 
@@ -111,8 +119,11 @@ mod present {
         walk::<N>(&m.nodes, &entry, s.bound, fetch, |word| {
             let index = node::index(word);
             let mask = trios(&m.trios[index], &s.shear);
+            if mask == 0 {
+                return None;
+            }
             s.take(index, mask);
-            s.reach(&entry)
+            Some(s.reach(&entry))
         });
     }
 
@@ -162,10 +173,10 @@ mod present {
         _mm256_sub_pd(_mm256_mul_pd(a, b), _mm256_mul_pd(c, d))
     }
 
-    /// The vector twin of [`Facets::test`].
+    /// The vector twin of [`Facets::test`]; None if no lane is hit.
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn facets<const K: usize>(b: &Facets<K>, o: [Four; 3], d: [Four; 3], bound: f64) -> Lanes {
+    fn facets<const K: usize>(b: &Facets<K>, o: [Four; 3], d: [Four; 3], bound: f64) -> Option<Lanes> {
         let n = [load(&b.normal[0]), load(&b.normal[1]), load(&b.normal[2])];
         let dn = dot(d, n);
         let t = _mm256_div_pd(_mm256_sub_pd(load(&b.offset), dot(n, o)), dn);
@@ -200,10 +211,7 @@ mod present {
         let margin = _mm256_xor_pd(margin, _mm256_set1_pd(-0.0));
         ok = _mm256_and_pd(ok, _mm256_cmp_pd::<_CMP_GE_OQ>(least, margin));
         let mask = _mm256_movemask_pd(ok) as u32;
-        if mask == 0 {
-            return Lanes { mask, distance: [0.0; LANES], edge: [0.0; LANES] };
-        }
-        Lanes { mask, distance: store(t), edge: store(least) }
+        (mask != 0).then(|| Lanes { mask, distance: store(t), edge: store(least) })
     }
 
     /// The vector twin of [`Trios::test`].
@@ -244,7 +252,7 @@ mod present {
         e: &Entry,
         bound: f64,
         fetch: impl Fn(u32),
-        mut leaf: impl FnMut(u32) -> f32,
+        mut leaf: impl FnMut(u32) -> Option<f32>,
     ) {
         let set = |v: &[f32; 3]| [_mm256_set1_ps(v[0]), _mm256_set1_ps(v[1]), _mm256_set1_ps(v[2])];
         let (inverse, near, far) = (set(&e.inverse), set(&e.near), set(&e.far));
@@ -256,7 +264,10 @@ mod present {
         let mut word = 0u32;
         loop {
             if word & LEAF != 0 {
-                reach = leaf(word);
+                // Most leaves are missed: then nothing has to be computed again.
+                if let Some(nearer) = leaf(word) {
+                    reach = nearer;
+                }
             } else {
                 let node = &nodes[word as usize];
                 let plane = |k: usize| {
