@@ -6,6 +6,7 @@ use crate::frame::Frame;
 use crate::item::{Content, Item, Placed};
 use crate::mesh::Mesh;
 use crate::node::{self, ITEMS, NOWHERE, QUADS, TRIANGLES};
+use crate::pages;
 use crate::polygon::{self, Outline};
 use crate::ray::Rank;
 use crate::simd::Vector;
@@ -323,7 +324,7 @@ fn pack<const K: usize>(
 ) -> Vec<Facets<K>> {
     let lists = std::mem::take(lists);
     let mut kept = kept.drain();
-    let mut blocks = Vec::with_capacity(lists.len());
+    let mut blocks = pages::list(lists.len());
     for (index, list) in lists.iter().enumerate() {
         let mut block = Facets::EMPTY;
         for (lane, &surface) in list.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {

@@ -2,6 +2,7 @@
 
 use crate::facet::LANES;
 use crate::node::{self, ITEMS, LEAF, Node, WIDTH};
+use crate::pages;
 use crate::tree::{Child, Part};
 
 /// Two leaves of a node are joined if the box around both has at most this share of the surface of the two.
@@ -33,7 +34,9 @@ impl Collapse {
         if let Some(root) = root {
             wide.expand(root);
         }
-        wide.nodes.shrink_to_fit();
+        let mut nodes = pages::list(wide.nodes.len());
+        nodes.append(&mut wide.nodes);
+        wide.nodes = nodes;
         wide
     }
 

@@ -9,7 +9,7 @@
 //! | `ray` | questions and answers |
 //! | `polygon`, `facet`, `quadric`, `trio`, `mesh` | hit tests |
 //! | `best` | which of several hits counts |
-//! | `bounds`, `frame`, `split`, `tree`, `collapse`, `node` | building |
+//! | `bounds`, `frame`, `split`, `tree`, `collapse`, `node`, `pages` | building |
 //! | `walk`, `simd`, `search` | walking |
 //! | `builder`, `world`, `item` | what is built and asked |
 
@@ -22,6 +22,7 @@ mod frame;
 mod item;
 mod mesh;
 mod node;
+mod pages;
 mod polygon;
 mod quadric;
 mod ray;

@@ -6,6 +6,7 @@ use crate::BuildError;
 use crate::bounds::{self, Box32};
 use crate::frame::Frame;
 use crate::node::{self, Node};
+use crate::pages;
 use crate::ray::{Hit, Rank, Ray};
 use crate::search::{Aim, Found};
 use crate::simd::Vector;
@@ -63,7 +64,8 @@ impl Mesh {
         let frame = Frame::around(exact());
         let boxes: Vec<Box32> = exact().map(|b| frame.child(b)).collect();
         let tree = tree::build(boxes, [geometry.triangles.len(), 0])?;
-        let trios = tree.blocks[0].iter().map(|list| Trios::pack(list, &geometry.triangles, &vertices)).collect();
+        let mut trios = pages::list(tree.blocks[0].len());
+        trios.extend(tree.blocks[0].iter().map(|list| Trios::pack(list, &geometry.triangles, &vertices)));
         let shaded = geometry.normals.len() + geometry.uvs.len() > 0;
         Ok(Self {
             deep: stack_needed(tree.depth) > STACK,
