@@ -1,15 +1,8 @@
 //! What is written for a colour: RGB of the standard or other primaries, XYZ, or one photometric number.
 
-use ambit_base::{Colour, LUMINOUS_EFFICACY, Rgb};
+use ambit_base::{Colour, LUMINOUS_EFFICACY, Rgb, TO_XYZ, desaturated};
 use ambit_cli::Output;
 use glam::{DMat3, DVec3};
-
-/// RGB of the standard primaries to CIE XYZ, columns.
-const TO_XYZ: DMat3 = DMat3::from_cols(
-    DVec3::new(0.51414462, 0.26510582, 0.02410053),
-    DVec3::new(0.32388448, 0.67010582, 0.12285274),
-    DVec3::new(0.16197090, 0.06478836, 0.85304674),
-);
 
 /// From XYZ to the sharpened cone responses in which whites are adapted (von Kries), columns.
 const SHARPENED: DMat3 = DMat3::from_cols(
@@ -98,19 +91,6 @@ fn adaptation([x, y]: [f64; 2]) -> DMat3 {
     let to = SHARPENED * (DVec3::new(x, y, 1.0 - x - y) / y);
     let from = SHARPENED * DVec3::ONE;
     FROM_SHARPENED * DMat3::from_diagonal(to / from) * SHARPENED
-}
-
-/// Moves a colour toward the grey of its original brightness until no channel is negative.
-pub(crate) fn desaturated(c: DVec3, grey: f64) -> DVec3 {
-    let least = c.min_element();
-    if least >= 0.0 {
-        return c;
-    }
-    if grey <= 0.0 {
-        return DVec3::ZERO;
-    }
-    let keep = grey / (grey - least);
-    (DVec3::splat(grey) + (c - grey) * keep).max(DVec3::ZERO)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What is written for a spectrum: a colour, one photometric number, or its bins.
 
-use crate::colour::{Conversion, desaturated, from_xyz};
-use ambit_base::LUMINOUS_EFFICACY;
+use crate::colour::{Conversion, from_xyz};
+use ambit_base::{LUMINOUS_EFFICACY, desaturated};
 use ambit_cli::{Output, SCOTOPIC_EFFICACY};
 use ambit_render::{Efficiency, Spectrum};
 use glam::{DMat3, DVec3};

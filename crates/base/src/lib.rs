@@ -12,7 +12,7 @@ mod sequence;
 mod transform;
 mod warp;
 
-pub use colour::{Colour, LUMINOUS_EFFICACY, Rgb};
+pub use colour::{Colour, LUMINOUS_EFFICACY, Rgb, TO_XYZ, desaturated};
 pub use frame::Frame;
 pub use hash::{hash_bits, hash_point, mix};
 pub use notify::{Location, Notify, Silent, Stderr};

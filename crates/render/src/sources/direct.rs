@@ -183,7 +183,7 @@ impl<O: Observer> Walk<'_, O> {
 
     /// Tests shadows in order of potential, adds what arrives and estimates the rest.
     fn test_shadows(&mut self, ray: &mut Ray<'_>, candidates: &mut [Candidate]) {
-        candidates.sort_by(|a, b| b.brightness.total_cmp(&a.brightness));
+        candidates.sort_unstable_by(|a, b| b.brightness.total_cmp(&a.brightness).then(a.source.cmp(&b.source)));
         let count = candidates.len();
         // Two are always tested.
         let ahead =
