@@ -291,4 +291,5 @@ def main():
     sys.exit(1 if counts["FAILS"] or not table else 0)
 
 
-main()
+if __name__ == "__main__":
+    main()
