@@ -329,7 +329,7 @@ fn pack<const K: usize>(
         let mut block = Facets::EMPTY;
         for (lane, &surface) in list.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let k = kept.fetch(surface - from);
-            block.set(lane, &k.facet, k.object);
+            block.set(lane, &k.facet, k.object, k.rank);
             record(k.object, k.rank, node::place(node::leaf(kind, index as u32), lane));
         }
         blocks.push(block);

@@ -12,6 +12,9 @@ use ambit_scene::{Bounds, ObjectId};
 /// Surfaces in a block.
 pub(crate) const LANES: usize = 4;
 
+/// Ranks from this one on are found by the object.
+pub(crate) const FAR_RANK: u8 = u8::MAX;
+
 /// One triangle (`K` = 3) or convex quadrilateral (4), as the builder keeps it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Facet<const K: usize> {
@@ -73,6 +76,8 @@ pub(crate) struct Facets<const K: usize> {
     pub(crate) margin: [f32; LANES],
     pub(crate) object: [ObjectId; LANES],
     pub(crate) dropped: [u8; LANES],
+    /// Index of the rank, at hand without another table; [`FAR_RANK`] if it does not fit.
+    pub(crate) rank: [u8; LANES],
 }
 
 /// What a block answers: `mask` has a bit for each lane whose plane is met between ε and the bound with the point not
@@ -95,9 +100,10 @@ impl<const K: usize> Facets<K> {
         margin: [0.0; LANES],
         object: [ObjectId::MAX; LANES],
         dropped: [0; LANES],
+        rank: [FAR_RANK; LANES],
     };
 
-    pub(crate) fn set(&mut self, lane: usize, f: &Facet<K>, object: ObjectId) {
+    pub(crate) fn set(&mut self, lane: usize, f: &Facet<K>, object: ObjectId, rank: u32) {
         for a in 0..3 {
             self.normal[a][lane] = f.normal[a];
         }
@@ -109,6 +115,7 @@ impl<const K: usize> Facets<K> {
         self.margin[lane] = f.margin();
         self.object[lane] = object;
         self.dropped[lane] = f.dropped() as u8;
+        self.rank[lane] = u8::try_from(rank).unwrap_or(FAR_RANK);
     }
 
     pub(crate) fn normal(&self, lane: usize) -> DVec3 {

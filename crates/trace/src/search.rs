@@ -122,10 +122,10 @@ impl<'w> Search<'w> {
     #[inline]
     fn offer(&mut self, c: Candidate) {
         let world = self.world;
-        if c.distance < self.aim.blocked_before && self.aim.all_block.unwrap_or_else(|| world.rank(c.object).blocks) {
+        if c.distance < self.aim.blocked_before && self.aim.all_block.unwrap_or_else(|| world.rank_at(&c).blocks) {
             self.blocked = Some(c.object);
         }
-        self.best.offer(c, |c| world.rank(c.object));
+        self.best.offer(c, |c| world.rank_at(c));
     }
 
     /// Traces through what an instance or mesh places, in its own coordinates and units.
@@ -180,7 +180,7 @@ impl<'w> Search<'w> {
             return Found::Blocked(object);
         }
         let world = self.world;
-        let rank = |c: &Candidate| world.rank(c.object);
+        let rank = |c: &Candidate| world.rank_at(c);
         match self.best.winner(rank) {
             None => Found::Nothing,
             Some(Winner::Inner(inner)) => Found::Hit(inner.hit, inner.rank),

@@ -1,7 +1,9 @@
 //! A world: everything an octree holds, ready for rays.
 
+use crate::best::Candidate;
 use crate::bounds;
-use crate::facet::Facets;
+
+use crate::facet::{FAR_RANK, Facets};
 use crate::item::{Content, Item};
 use crate::node::{self, NOWHERE, Node, QUADS, TRIANGLES};
 use crate::ray::{Hit, Opacity, Rank, Ray, Shadow};
@@ -146,8 +148,20 @@ impl World {
         self
     }
 
+    /// The rank of a surface that was hit.
     #[inline]
-    pub(crate) fn rank(&self, object: ObjectId) -> Rank {
+    pub(crate) fn rank_at(&self, c: &Candidate) -> Rank {
+        let (kind, index, lane) = node::split(c.place);
+        let near = match kind {
+            TRIANGLES => self.triangles[index].rank[lane],
+            QUADS => self.quads[index].rank[lane],
+            _ => FAR_RANK,
+        };
+        if near == FAR_RANK { self.rank(c.object) } else { self.ranks[near as usize] }
+    }
+
+    #[inline]
+    fn rank(&self, object: ObjectId) -> Rank {
         let index = object.checked_sub(self.first).and_then(|i| self.rank_of.get(i as usize));
         let rank = index.and_then(|&i| self.ranks.get(i as usize));
         rank.copied().unwrap_or(Rank { opacity: Opacity::Nothing, modifier: VOID, blocks: false, bends: false })

@@ -266,3 +266,25 @@ fn shadows_look_into_instances() {
     assert!(matches!(world.shadow(&DOWN, Some(0)), Shadow::Other(h) if h.object == 1 && h.modifier == 2));
     assert_eq!(world.shadow(&Ray { direction: DVec3::Z, ..DOWN }, None), Shadow::Reaches);
 }
+
+#[test]
+fn every_surface_keeps_its_modifier_however_many_there_are() {
+    // More than a byte can number; triangles, quadrilaterals and pentagons in turns.
+    let mut b = WorldBuilder::new();
+    for i in 0..600u32 {
+        let (x, y) = (f64::from(i % 25), f64::from(i / 25));
+        let outline = [(0.1, 0.1), (0.9, 0.1), (0.9, 0.8), (0.5, 0.9), (0.1, 0.8)];
+        let corners: Vec<DVec3> =
+            outline[..3 + i as usize % 3].iter().map(|(u, v)| DVec3::new(x + u, y + v, 0.0)).collect();
+        let opacity = if i % 2 == 0 { Opacity::Opaque } else { Opacity::Transparent };
+        b.add(i, &polygon(&corners), rank(opacity, 1000 + i));
+    }
+    let world = b.build().unwrap();
+    for i in 0..600u32 {
+        let origin = DVec3::new(f64::from(i % 25) + 0.6, f64::from(i / 25) + 0.3, 1.0);
+        let ray = Ray::new(origin, DVec3::NEG_Z);
+        let hit = world.nearest(&ray).unwrap();
+        assert_eq!((hit.object, hit.modifier), (i, 1000 + i));
+        assert_eq!(matches!(world.shadow(&ray, None), Shadow::Blocked(_)), i % 2 == 0, "{i}");
+    }
+}
