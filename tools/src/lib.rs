@@ -2,6 +2,7 @@
 //! parts, is here.
 
 mod colour;
+mod goal;
 mod light;
 mod quantity;
 pub mod raderr;

@@ -7,7 +7,8 @@ use ambit_cli::{Class, Failure, Function, Output, Rendering};
 use ambit_file::{Header, general};
 use ambit_render::picture::SourceOutline;
 use ambit_render::{
-    Answer, Definition, Environment, Names, OctreeSource, Renderer, Request, Spectra, Store, TreeRay, load,
+    Answer, Definition, Environment, Names, OctreeSource, Options, Renderer, Request, SceneFingerprint, Spectra, Store,
+    TreeRay, load,
 };
 use ambit_scene::{ErrorClass, ObjectId};
 use std::borrow::Cow;
@@ -33,6 +34,8 @@ pub(crate) struct Scene<'a> {
     renderer: Renderer,
     /// Of a calculation by wavelength.
     spectrum: Option<Spectral>,
+    /// Of the scene, until the ambient file is opened, if there is one.
+    fingerprint: Option<SceneFingerprint>,
     /// The octree's header.
     pub(crate) header: Header,
 }
@@ -46,14 +49,13 @@ struct Spectral {
 }
 
 impl<'a> Scene<'a> {
-    /// Loads the octree and prepares the calculation.
+    /// Loads the octree and prepares the calculation, which [`Scene::begin`] begins.
     ///
     /// `casting` says that rays are only cast, so that the ambient file stays closed. Values of answers are red, green
     /// and blue, or, in a calculation by wavelength, the channels of `output`.
     pub(crate) fn open(
         session: &'a Session,
         source: OctreeSource,
-        name: &str,
         rendering: &Rendering,
         casting: bool,
         output: Output,
@@ -70,29 +72,41 @@ impl<'a> Scene<'a> {
         let environment = Environment { find: &find, notify: &session.messages, definitions: &definitions };
         let loaded = load(source, &environment).map_err(failed)?;
         let header = loaded.header().clone();
-        let ambient = rendering.ambient_file.as_ref().zip(rendering.reuse).filter(|_| !casting);
-        let caching = rendering.options.ambient.accuracy > EPSILON;
-        let fingerprint = (ambient.is_some() && caching).then(|| loaded.fingerprint(&rendering.options, &environment));
-        let mut renderer = Renderer::new(loaded, rendering.options.clone(), &environment).map_err(failed)?;
-        if let Some((file, reuse)) = ambient {
-            if let Some(fingerprint) = &fingerprint {
-                let (header, owner) = (ambient_header(rendering, name), owner());
-                let path = Path::new(file);
-                let store = Store { path, header: &header, fingerprint, reuse, owner: &owner };
-                renderer.share(&store, &session.messages).map_err(failed)?;
-            } else {
-                let text = format!("zero ambient accuracy so \"{file}\" not opened");
-                ambit_base::Notify::warn(&session.messages, &text);
-            }
-        }
-        if rendering.statistics {
-            renderer.measure(crate::statistics::clock);
-        }
-        session.begin_work();
+        let ambient = rendering.ambient_file.as_ref().filter(|_| !casting);
+        let fingerprint = ambient.map(|_| loaded.fingerprint(&environment));
+        let renderer = Renderer::new(loaded, rendering.options.clone(), &environment).map_err(failed)?;
         let spectrum = &rendering.options.spectrum;
         let spectrum = (!spectrum.is_rgb())
             .then(|| Spectral { spectra: None, conversion: SpectralConversion::new(output, spectrum) });
-        Ok(Self { session, renderer, spectrum, header })
+        Ok(Self { session, renderer, spectrum, fingerprint, header })
+    }
+
+    /// Begins anew with an empty cache, the seed of `settings`, and what of them trades time for error.
+    pub(crate) fn restart(&mut self, settings: &Options) {
+        self.renderer.restart(settings);
+    }
+
+    /// Opens the ambient file and begins to measure. From here on settings stay; `name` is the octree's.
+    pub(crate) fn begin(&mut self, name: &str, rendering: &Rendering) -> Result<(), Stop> {
+        let messages = &self.session.messages;
+        let scene = self.fingerprint.take();
+        let ambient = rendering.ambient_file.as_ref().zip(rendering.reuse).zip(scene);
+        if let Some(((file, reuse), scene)) = ambient {
+            if rendering.options.ambient.accuracy > EPSILON {
+                let (header, owner) = (ambient_header(rendering, name), owner());
+                let fingerprint = &scene.with(&rendering.options);
+                let store = Store { path: Path::new(file), header: &header, fingerprint, reuse, owner: &owner };
+                self.renderer.share(&store, messages).map_err(failed)?;
+            } else {
+                let text = format!("zero ambient accuracy so \"{file}\" not opened");
+                ambit_base::Notify::warn(messages, &text);
+            }
+        }
+        if rendering.statistics {
+            self.renderer.measure(crate::statistics::clock);
+        }
+        self.session.begin_work();
+        Ok(())
     }
 
     /// Outlines of the light sources.

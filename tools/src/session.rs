@@ -96,6 +96,8 @@ pub(crate) struct Session {
     pub(crate) program: String,
     /// Options after expansion.
     pub(crate) words: Vec<String>,
+    /// Flags of the options that were given.
+    pub(crate) flags: Vec<&'static str>,
     /// Octree argument.
     pub(crate) octree: Option<String>,
     /// Where auxiliary files are.
@@ -126,6 +128,7 @@ impl Session {
             messages: ConsoleMessages { program: program.clone(), warnings: true },
             program,
             words: Vec::new(),
+            flags: Vec::new(),
             octree: None,
             search,
             meter: Arc::new(meter),
@@ -182,8 +185,8 @@ impl Session {
             ambit_base::Notify::warn(&self.messages, &notice);
         }
         match result? {
-            Scan::Run { octree, words } => {
-                (self.octree, self.words) = (octree, words);
+            Scan::Run { octree, words, flags } => {
+                (self.octree, self.words, self.flags) = (octree, words, flags);
                 return Ok(true);
             }
             Scan::Version => print(&format!("{VERSION}\n"))?,

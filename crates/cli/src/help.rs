@@ -66,6 +66,7 @@ fn heading(flag: &str) -> &'static str {
         "pRGB" | "pXYZ" | "pc" | "pY" | "pS" | "pM" | "pA" | "co" | "fIO" | "o" | "h" | "ro" | "r" | "z" | "S" => {
             "Output"
         }
+        "-error" => "Quality",
         "-reuse" | "-stats" | "-unbiased" | "-unbounded-bounces" | "-exact-textures" | "-actual-weights"
         | "-neighbor-clamping" | "-measured-reuse" | "-overlap" | "-spacing" => "Interreflection",
         _ => match flag.as_bytes()[0] {

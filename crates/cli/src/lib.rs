@@ -11,6 +11,7 @@ mod console;
 mod defaults;
 mod failure;
 mod features;
+mod goal;
 mod help;
 mod outside;
 mod picture;

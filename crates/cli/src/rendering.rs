@@ -2,6 +2,7 @@
 
 use crate::common::{Carries, Common};
 use crate::failure::Failure;
+use crate::goal::goal_row;
 use crate::spectrum::{Spectrum, spectrum_rows};
 use crate::systems::system_rows;
 use crate::table::{Label, Place, Row};
@@ -18,6 +19,9 @@ pub struct Rendering {
     pub reuse: Option<Reuse>,
     /// `--stats`: say in the end what the calculation took.
     pub statistics: bool,
+    /// `--error`: the RMS error that settings are chosen for, relative to the mean, above 0 and up to 1; `None` takes the
+    /// settings as they are.
+    pub goal: Option<f64>,
     /// `-f FILE` and `-e EXPRESSION`, in order.
     pub functions: Vec<Function>,
     /// `-cs`, `-cw`.
@@ -64,6 +68,7 @@ impl Rendering {
             ambient_file: None,
             reuse: Some(Reuse::Auto),
             statistics: false,
+            goal: None,
             functions: Vec::new(),
             spectrum: Spectrum::default(),
             photon_maps: Vec::new(),
@@ -296,6 +301,7 @@ pub(crate) fn rendering_rows<S: Carries<Rendering> + Carries<Common>>() -> Vec<R
     ];
     rows.extend(limit_rows());
     rows.extend(file_rows());
+    rows.push(goal_row());
     rows.extend(system_rows());
     rows
 }

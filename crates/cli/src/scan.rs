@@ -12,6 +12,8 @@ pub struct Arguments<'a> {
     rest: VecDeque<String>,
     /// Words read, after expansion: what a header records.
     read: Vec<String>,
+    /// Flags of the rows that were read.
+    flags: Vec<&'static str>,
     outside: &'a dyn Outside,
 }
 
@@ -24,6 +26,8 @@ pub enum Scan {
         octree: Option<String>,
         /// The options after expansion.
         words: Vec<String>,
+        /// Flags of the rows that were read, in order.
+        flags: Vec<&'static str>,
     },
     /// `-version`, `--version`.
     Version,
@@ -48,7 +52,7 @@ pub fn scan<S>(
     settings: &mut S,
     outside: &dyn Outside,
 ) -> Result<Scan, Failure> {
-    let mut words = Arguments { rest: arguments.into_iter().collect(), read: Vec::new(), outside };
+    let mut words = Arguments { rest: arguments.into_iter().collect(), read: Vec::new(), flags: Vec::new(), outside };
     while let Some(word) = words.expanded()? {
         match word.as_str() {
             "-version" | "--version" => return Ok(Scan::Version),
@@ -69,7 +73,7 @@ pub fn scan<S>(
 
 impl Arguments<'_> {
     fn run(self, octree: Option<String>) -> Scan {
-        Scan::Run { octree, words: self.read }
+        Scan::Run { octree, words: self.read, flags: self.flags }
     }
 
     /// The next word where `@FILE` and `$VARIABLE` stand for words.
@@ -156,6 +160,7 @@ impl Arguments<'_> {
                     act(settings, value, &numbers)?;
                 }
             }
+            self.flags.push(row.flag);
             return Ok(());
         }
         Err(Failure::at(word))

@@ -175,12 +175,13 @@ fn other_errors_have_their_own_words() {
 #[test]
 fn words_are_expanded_where_options_stand() {
     let (options, result) = rtrace("$OPTIONS $NOTHING -te @four room.oct");
-    let Ok(Scan::Run { octree, words }) = result else { panic!("{result:?}") };
+    let Ok(Scan::Run { octree, words, .. }) = result else { panic!("{result:?}") };
     assert_eq!(octree.as_deref(), Some("room.oct"));
     assert_eq!(words.join(" "), "-ab 2 -ad 99 -aa .3 -te @four");
     let ambient = &options.rendering.options.ambient;
     assert_eq!((ambient.bounces, ambient.divisions, ambient.accuracy), (2, 99, 0.3));
-    assert_eq!(rtrace("-te room.oct").1.unwrap(), Scan::Run { octree: None, words: words_of("-te room.oct") });
+    let read = Scan::Run { octree: None, words: words_of("-te room.oct"), flags: vec!["te"] };
+    assert_eq!(rtrace("-te room.oct").1.unwrap(), read);
 }
 
 fn words_of(line: &str) -> Vec<String> {

@@ -22,26 +22,60 @@ pub struct Ladder {
     pub rungs: Vec<Rung>,
 }
 
-/// The rungs unless others are given. Each has about twice as many hemisphere samples as the one before, and an accuracy
-/// (which sets the number of records, as 1/accuracy²) that falls with it, so that noise and interpolation error stay in
-/// proportion.
-const STANDARD: &str = "\
-1: -aa .4 -ar 16 -ad 64 -as 16
-2: -aa .3 -ar 32 -ad 128 -as 32
-3: -aa .2 -ar 64 -ad 256 -as 64
-4: -aa .15 -ar 64 -ad 512 -as 128
-5: -aa .1 -ar 128 -ad 1024 -as 256
-6: -aa .07 -ar 128 -ad 2048 -as 512
-";
+/// How densely irradiance values stand: accuracy `-aa` and resolution `-ar`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spacing {
+    /// `-aa`; their number is about as 1/accuracy².
+    pub accuracy: f64,
+    /// `-ar`.
+    pub resolution: i32,
+}
+
+const fn spacing(accuracy: f64, resolution: i32) -> Spacing {
+    Spacing { accuracy, resolution }
+}
+
+/// Spacings from coarse to fine: all that settings are chosen from (`--error`), and but for the first and the last one
+/// those of the standard ladder.
+pub const SPACINGS: [Spacing; 8] = [
+    spacing(0.6, 8),
+    spacing(0.4, 16),
+    spacing(0.3, 32),
+    spacing(0.2, 64),
+    spacing(0.15, 64),
+    spacing(0.1, 128),
+    spacing(0.07, 128),
+    spacing(0.05, 256),
+];
+
+/// Divisions of the standard ladder's first rung.
+const FIRST_DIVISIONS: i32 = 64;
+
+/// How many super-samples (`-as`) go with so many divisions (`-ad`): a quarter as many.
+pub fn super_samples(divisions: i32) -> i32 {
+    divisions / 4
+}
 
 impl Ladder {
     /// The built-in ladder for the irradiance cache: accuracy .4 to .07, 64 to 2048 divisions.
     ///
-    /// # Panics
-    ///
-    /// Never: the built-in ladder is well formed.
+    /// Each rung has about twice as many hemisphere samples as the one before, and an accuracy that falls with it, so
+    /// that noise and interpolation error stay in proportion.
     pub fn standard() -> Self {
-        Self::parse(STANDARD, "built-in ladder").expect("the built-in ladder is well formed")
+        let inner = &SPACINGS[1..SPACINGS.len() - 1];
+        let rung = |(k, s): (usize, &Spacing)| {
+            let divisions = FIRST_DIVISIONS << k;
+            let accuracy = s.accuracy.to_string();
+            let words = [
+                ("-aa", accuracy.strip_prefix('0').unwrap_or(&accuracy).to_owned()),
+                ("-ar", s.resolution.to_string()),
+                ("-ad", divisions.to_string()),
+                ("-as", super_samples(divisions).to_string()),
+            ];
+            let options = words.into_iter().flat_map(|(flag, value)| [flag.to_owned(), value]).collect();
+            Rung { label: (k + 1).to_string(), options }
+        };
+        Self { rungs: inner.iter().enumerate().map(rung).collect() }
     }
 
     /// The first `count` rungs, at least one.
@@ -100,7 +134,10 @@ mod tests {
         let ladder = Ladder::parse("# mine\ncoarse: -aa .4 -ad 64 # quick\n\n-aa .2\n", "l").unwrap();
         let shown: Vec<_> = ladder.rungs.iter().map(|r| format!("{}={}", r.label, r.options.join(" "))).collect();
         assert_eq!(shown, ["coarse=-aa .4 -ad 64", "2=-aa .2"]);
-        assert_eq!(Ladder::standard().rungs.len(), 6);
+        let standard = Ladder::standard().rungs;
+        assert_eq!(standard.len(), 6);
+        assert_eq!(standard[0].options.join(" "), "-aa .4 -ar 16 -ad 64 -as 16");
+        assert_eq!(standard[5].options.join(" "), "-aa .07 -ar 128 -ad 2048 -as 512");
         assert_eq!(Ladder::standard().first(2).rungs.len(), 2);
     }
 

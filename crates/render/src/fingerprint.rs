@@ -22,14 +22,32 @@ const VERSION: &str = "1";
 const CHUNK: usize = 4096;
 
 impl Loaded {
-    /// The fingerprint of the light in this scene as `options` compute it.
-    pub fn fingerprint(&self, options: &Options, environment: &Environment<'_>) -> Fingerprint {
+    /// The fingerprint of this scene, without the options that its light is computed with.
+    pub fn fingerprint(&self, environment: &Environment<'_>) -> SceneFingerprint {
         let modifiers = Modifiers::of(&self.scene, environment);
-        let mut marks = scene_marks(&Surfaces { loaded: self, modifiers: &modifiers }.total(), environment);
+        let marks = scene_marks(&Surfaces { loaded: self, modifiers: &modifiers }.total(), environment);
         // Where nothing relays light, -dr changes nothing.
         let relays =
             self.scene.ids().any(|id| matches!(self.scene.object(id).kind, Kind::Mirror | Kind::Prism1 | Kind::Prism2));
-        marks.extend(option_marks(options, self.cube.edge, relays));
+        SceneFingerprint { marks, edge: self.cube.edge, relays }
+    }
+}
+
+/// What tells a scene from others, for options that are settled later.
+#[derive(Clone, Debug)]
+pub struct SceneFingerprint {
+    marks: Vec<Mark>,
+    /// Edge of the octree's cube, scene units.
+    edge: f64,
+    /// Whether something relays light.
+    relays: bool,
+}
+
+impl SceneFingerprint {
+    /// The fingerprint of the light in the scene as `options` compute it.
+    pub fn with(self, options: &Options) -> Fingerprint {
+        let mut marks = self.marks;
+        marks.extend(option_marks(options, self.edge, self.relays));
         Fingerprint { marks }
     }
 }

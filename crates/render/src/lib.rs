@@ -28,6 +28,7 @@ mod work;
 pub use ambit_ambient::{Fingerprint, Reuse};
 pub use ambit_ambient::{MOST_OVERLAP, Spacing, Systems};
 pub use error::Error;
+pub use fingerprint::SceneFingerprint;
 pub use options::{Ambient, Direct, Limits, Medium, Options, Selection, Specular};
 pub use prepare::{Definition, Environment, Loaded, OctreeSource, load};
 pub use renderer::Renderer;

@@ -55,21 +55,7 @@ impl Renderer {
     /// Compiles `loaded` for `options`.
     pub fn new(loaded: Loaded, options: Options, environment: &Environment<'_>) -> Result<Self, Error> {
         let scene = Prepared::new(loaded, &options, environment)?;
-        let a = &options.ambient;
-        let params = Params {
-            bounces: a.bounces,
-            accuracy: a.accuracy,
-            resolution: a.resolution,
-            divisions: a.divisions,
-            super_samples: a.super_samples,
-            value: a.value,
-            weight: a.weight,
-            min_weight: options.limits.weight,
-            overlap: a.overlap,
-            seed: options.seed,
-            systems: a.systems,
-        };
-        let cache = || Cache::new(params, scene.cube.origin, scene.cube.edge);
+        let cache = || Cache::new(params(&options), scene.cube.origin, scene.cube.edge);
         let passes = if scene.modifiers.spectral() { options.spectrum.passes() } else { 1 };
         let sources = scene.sources.len();
         let works = (0..=rayon::current_num_threads()).map(|_| Mutex::new(Work::new(sources))).collect();
@@ -86,6 +72,25 @@ impl Renderer {
             pass: 0,
             waiting,
         })
+    }
+
+    /// Begins anew with an empty cache and other settings: the seed, and what trades time for error, which is `-aa -ad
+    /// -as -ar -ds -dt`. Everything else stays as the scene was compiled for, whatever `settings` say of it. Rays are
+    /// counted on. An ambient file must not be shared yet.
+    pub fn restart(&mut self, settings: &Options) {
+        let (own, other) = (&mut self.options, settings);
+        own.seed = other.seed;
+        (own.direct.sampling, own.direct.threshold) = (other.direct.sampling, other.direct.threshold);
+        let (a, b) = (&mut own.ambient, &other.ambient);
+        (a.accuracy, a.resolution) = (b.accuracy, b.resolution);
+        (a.divisions, a.super_samples) = (b.divisions, b.super_samples);
+        let sources = self.scene.sources.len();
+        let begin = |cache: &mut Cache, tally: &mut Tally| {
+            *cache = Cache::new(params(&self.options), self.scene.cube.origin, self.scene.cube.edge);
+            *tally = Tally::new(sources);
+        };
+        begin(&mut self.cache, &mut self.tally);
+        self.waiting.iter_mut().for_each(|(cache, tally, _)| begin(cache, tally));
     }
 
     /// As [`Renderer::trace`], by wavelength: the first pass's answers, and the spectra of all.
@@ -228,6 +233,24 @@ impl Renderer {
     /// Identifier of an object; `*` for [`VOID`] as a surface is the caller's affair.
     pub fn name(&self, id: ObjectId) -> Cow<'_, str> {
         if id == VOID { Cow::Borrowed("void") } else { self.scene.objects.name(id) }
+    }
+}
+
+/// What of the options the irradiance cache has to know.
+fn params(options: &Options) -> Params {
+    let a = &options.ambient;
+    Params {
+        bounces: a.bounces,
+        accuracy: a.accuracy,
+        resolution: a.resolution,
+        divisions: a.divisions,
+        super_samples: a.super_samples,
+        value: a.value,
+        weight: a.weight,
+        min_weight: options.limits.weight,
+        overlap: a.overlap,
+        seed: options.seed,
+        systems: a.systems,
     }
 }
 

@@ -3,6 +3,7 @@
 mod frame;
 mod header;
 mod output;
+mod pilot;
 mod recover;
 mod sequence;
 mod watch;
@@ -66,6 +67,10 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         session.messages.warn(&text);
     }
     options.spacing = options.spacing.clamp(1, GREATEST_SPACING);
+    if options.rendering.goal.is_some() && !session.flags.contains(&"ps") {
+        // What lies between pixels that are traced cannot be told from a part of them.
+        options.spacing = 1;
+    }
     if options.common.persist.is_some() {
         if options.sequence <= 0 {
             return Err(Failure::user("persist option only for sequences").into());
@@ -85,7 +90,11 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     }
     session.prepare(&options.common)?;
     let (source, name) = source(session)?;
-    let mut scene = Scene::open(session, source, &name, &options.rendering, false, options.common.output)?;
+    let mut scene = Scene::open(session, source, &options.rendering, false, options.common.output)?;
+    if let Some(error) = options.rendering.goal {
+        options.rendering.options = pilot::choose(session, &options, space(&options), &mut scene, error)?;
+    }
+    scene.begin(&name, &options.rendering)?;
     let result = render(session, &options, &mut scene);
     // The ambient file is closed whatever happened; the first error counts.
     result.and(scene.close())
@@ -104,8 +113,13 @@ fn source(session: &Session) -> Result<(OctreeSource, String), Stop> {
     })
 }
 
+/// The space of the pixels that are written.
+fn space(options: &PictureOptions) -> PixelSpace {
+    if options.common.output == Output::Xyz { PixelSpace::Xyz } else { PixelSpace::Rgb }
+}
+
 fn render(session: &Session, options: &PictureOptions, scene: &mut Scene<'_>) -> Result<(), Stop> {
-    let space = if options.common.output == Output::Xyz { PixelSpace::Xyz } else { PixelSpace::Rgb };
+    let space = space(options);
     // Spectra come converted.
     let by_wavelength = !options.rendering.options.spectrum.is_rgb();
     let conversion = if by_wavelength { Conversion::Same } else { Conversion::new(options.common.output, true) };

@@ -2,6 +2,7 @@
 
 mod header;
 mod input;
+mod pilot;
 mod record;
 mod stream;
 mod tree;
@@ -17,7 +18,7 @@ use ambit_render::OctreeSource;
 use input::RayReader;
 use record::RecordWriter;
 use std::ffi::OsString;
-use std::io::{BufReader, Write, stdin, stdout};
+use std::io::{BufReader, Read, Write, stdin, stdout};
 use std::process::ExitCode;
 use tree::TreeWriter;
 
@@ -55,9 +56,21 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         Some(command) => OctreeSource::Command(command.to_owned()),
         None => OctreeSource::File(octree.clone()),
     };
-    let mut scene =
-        Scene::open(session, source, &octree, &options.rendering, !job.spec.shades(), options.common.output)?;
-    let result = job.run(session, &options, &mut scene);
+    let mut scene = Scene::open(session, source, &options.rendering, !job.spec.shades(), options.common.output)?;
+    let goal = options.rendering.goal.filter(|_| job.spec.shades());
+    let Some(error) = goal else {
+        scene.begin(&octree, &options.rendering)?;
+        let result = job.run(session, &options, &mut scene, stdin().lock());
+        // The ambient file is closed whatever happened; the first error counts.
+        return result.and(scene.close());
+    };
+    // The pilot is made of rays from everywhere in the input.
+    let mut input = Vec::new();
+    stdin().lock().read_to_end(&mut input).map_err(|e| Failure::system("cannot read standard input", &e))?;
+    let stream = stream::Stream::new(&options, &job.spec);
+    options.rendering.options = pilot::choose(session, &options, &stream, &input, &mut scene, error)?;
+    scene.begin(&octree, &options.rendering)?;
+    let result = job.run(session, &options, &mut scene, &input[..]);
     // The ambient file is closed whatever happened; the first error counts.
     result.and(scene.close())
 }
@@ -121,7 +134,13 @@ impl Job {
         Ok(Self { spec, conversion })
     }
 
-    fn run(&self, session: &Session, options: &RayOptions, scene: &mut Scene<'_>) -> Result<(), Stop> {
+    fn run(
+        &self,
+        session: &Session,
+        options: &RayOptions,
+        scene: &mut Scene<'_>,
+        input: impl Read,
+    ) -> Result<(), Stop> {
         let mut out = stdout().lock();
         let picture = (options.width > 0 && options.height > 0).then_some((options.width, options.height));
         let mut head = Vec::new();
@@ -136,7 +155,7 @@ impl Job {
         written.map_err(|e| Stop::writing("write error", &e))?;
         let records = RecordWriter::new(&self.spec.fields, &self.conversion, options.format);
         let tree = self.spec.tree.as_ref().map(|t| TreeWriter::new(t, &self.conversion, options));
-        let reader = RayReader::new(BufReader::with_capacity(1 << 16, stdin().lock()), options.input);
+        let reader = RayReader::new(BufReader::with_capacity(1 << 16, input), options.input);
         let complete =
             stream::Stream::new(options, &self.spec).run(reader, &records, tree.as_ref(), scene, &mut out)?;
         if !complete {

@@ -42,6 +42,17 @@ impl Stream {
         Self { aim, limited: options.limited, interval, most }
     }
 
+    /// What is asked for a ray, by its number.
+    pub(crate) fn request(&self, origin: DVec3, direction: DVec3, index: u32) -> Request {
+        let limit = if self.limited { direction.length() } else { FAR };
+        Request { origin, direction, limit, index, aim: self.aim }
+    }
+
+    /// Most rays that are answered, and directions of zero that count as such.
+    pub(crate) fn most(&self) -> usize {
+        if self.most == 0 { usize::MAX } else { usize::try_from(self.most).unwrap_or(usize::MAX) }
+    }
+
     /// Answers rays until they end. Returns false if more were promised (`-y`).
     pub(crate) fn run<R: BufRead>(
         &self,
@@ -74,13 +85,11 @@ impl Stream {
                     end = true;
                     break;
                 };
-                let length = direction.length();
-                if length == 0.0 {
+                if direction.length() == 0.0 {
                     zero = true;
                     break;
                 }
-                let limit = if self.limited { length } else { FAR };
-                requests.push(Request { origin, direction, limit, index, aim: self.aim });
+                requests.push(self.request(origin, direction, index));
                 index = index.wrapping_add(1);
             }
             if let Some(tree) = tree {

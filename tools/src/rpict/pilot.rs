@@ -1,0 +1,73 @@
+//! The pilot of a picture (`--error`): a lattice of its own pixels, so that errors are those of the picture.
+
+use super::frame::{Frame, set_up};
+use super::recover;
+use crate::goal::{self, Goal, SIDE};
+use crate::light::{Light, Scene};
+use crate::session::{Session, Stop};
+use ambit_base::Rgb;
+use ambit_cli::{Failure, PictureOptions};
+use ambit_file::{PixelSpace, Projection};
+use ambit_render::picture::{Camera, Lens, Order, Pixel, PixelRequest, Sampler};
+use ambit_render::{Options, Request};
+use std::path::Path;
+
+/// Chooses the settings for the picture that the options ask for.
+pub(super) fn choose(
+    session: &Session,
+    options: &PictureOptions,
+    space: PixelSpace,
+    scene: &mut Scene<'_>,
+    error: f64,
+) -> Result<Options, Stop> {
+    if options.sequence > 0 {
+        return Err(Failure::unsupported("--error with a sequence of views (-S) is").into());
+    }
+    let frame = Frame::new(view(session, options, space)?, options);
+    let mut pilot = |scene: &mut Scene<'_>| values(&frame, options, scene);
+    let goal = Goal { error, options: &options.rendering.options, unit: "pixels" };
+    goal::choose(session, scene, &goal, &mut pilot)
+}
+
+/// The view, which a recovered picture brings along.
+fn view(session: &Session, options: &PictureOptions, space: PixelSpace) -> Result<Projection, Stop> {
+    let path = options.recover.as_deref().map(Path::new).filter(|path| path.exists());
+    let recovered = path.and_then(|path| recover::read(session, path.to_path_buf(), space));
+    Ok(set_up(recovered.as_ref().map_or(&options.view, |r| &r.view))?)
+}
+
+/// The pixels of the pilot; those outside the view are black, as in the picture.
+fn values(frame: &Frame, options: &PictureOptions, scene: &mut Scene<'_>) -> Result<Vec<[f32; 3]>, Stop> {
+    let (width, height) = (frame.width.min(SIDE), frame.height.min(SIDE));
+    // The same number of rays leave the eye whatever the settings, in the order of a picture with a cache.
+    let order = Order::CoarseToFine;
+    let sampler = Sampler { width, rows: height, height, spacing: 1, threshold: 0.0, distances: false, order };
+    let camera = Camera {
+        projection: frame.view,
+        previous: None,
+        width: frame.width,
+        height: frame.height,
+        lens: Lens { jitter: options.jitter, aperture: options.aperture, motion: 0.0 },
+        seed: options.rendering.options.seed,
+    };
+    let place = |k: u32, few: u32, many: u32| ((2 * k + 1) * many) / (2 * few);
+    let mut values = Vec::new();
+    sampler.run(
+        &mut |pixels: &[PixelRequest]| -> Result<Vec<Pixel>, Stop> {
+            let ray = |p: &PixelRequest| {
+                let (x, y) = (place(p.x, width, frame.width), place(p.y, height, frame.height));
+                camera.ray(PixelRequest { x, y, index: p.index })
+            };
+            let rays: Vec<Option<Request>> = pixels.iter().map(ray).collect();
+            let requests: Vec<Request> = rays.iter().flatten().copied().collect();
+            let mut answers = scene.trace(&requests)?.into_iter();
+            let value = |ray: &Option<Request>| ray.and_then(|_| answers.next()).map_or(Rgb::ZERO, |a| a.value);
+            Ok(rays.iter().map(value).map(|colour| Pixel { colour, distance: 0.0 }).collect())
+        },
+        &mut |band| {
+            values.extend(band.rows.iter().flatten().map(|pixel| pixel.colour.to_array()));
+            Ok(())
+        },
+    )?;
+    Ok(values)
+}
