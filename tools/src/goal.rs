@@ -63,7 +63,7 @@ struct Choice {
     error: f64,
     /// What it may well have.
     bound: f64,
-    /// Settings that were tried.
+    /// Runs of the pilot.
     tried: usize,
 }
 
@@ -85,17 +85,19 @@ pub(crate) fn choose(
     };
     let percent = |x: f64| format!("{} %", general(100.0 * x, 2));
     let asked = general(100.0 * goal.error, 4);
-    let mut text = format!(
-        "error of {asked} % asked: {}; estimated error {} (pilots of {rays} {unit} with {} settings)",
+    let doubt = if choice.error > goal.error {
+        "; that is above what is asked: no setting is expected to reach it".to_owned()
+    } else if choice.bound > goal.error {
+        format!("; it may be as much as {}: no setting is sure to reach what is asked", percent(choice.bound))
+    } else {
+        String::new()
+    };
+    let text = format!(
+        "error of {asked} % asked: {}; estimated error {} (pilots of {rays} {unit}, {} runs){doubt}",
         words(&choice.options),
         percent(choice.error),
         choice.tried
     );
-    if choice.error > goal.error {
-        text += "; that is above what is asked: no setting is expected to reach it";
-    } else if choice.bound > goal.error {
-        text += &format!("; it may be as much as {}: no setting is sure to reach what is asked", percent(choice.bound));
-    }
     if choice.bound > goal.error {
         session.messages.warn(&text);
     } else {
@@ -179,11 +181,13 @@ fn interreflection(options: &Options, given: &Given<'_>) -> Vec<(Setting, Option
     }
     let mut spacings: Vec<(f64, i32)> = SPACINGS.iter().map(|s| (s.accuracy, s.resolution)).collect();
     if given.has("ar") {
-        spacings.iter_mut().for_each(|s| s.1 = a.resolution);
+        for spacing in &mut spacings {
+            spacing.1 = a.resolution;
+        }
     }
     if given.has("aa") {
         // The resolution that goes with such an accuracy, or with the finest one that is coarser.
-        let resolution = spacings.iter().filter(|s| s.0 >= a.accuracy).next_back().map_or(spacings[0].1, |s| s.1);
+        let resolution = spacings.iter().rfind(|s| s.0 >= a.accuracy).map_or(spacings[0].1, |s| s.1);
         spacings = vec![(a.accuracy, resolution)];
     }
     let divisions = if given.has("ad") { vec![a.divisions] } else { DIVISIONS.map(|k| 1 << k).collect() };

@@ -46,10 +46,10 @@ const STEP: f64 = 0.25;
 const LEAST: f64 = 1e-12;
 
 /// The median of true over modelled error, over scenes.
-pub const TYPICAL: f64 = 1.1;
+pub const TYPICAL: f64 = 1.2;
 
 /// What true over modelled error stays below in 9 of 10 cases.
-pub const SAFETY: f64 = 1.6;
+pub const SAFETY: f64 = 1.75;
 
 /// Settings of interreflection, as far as the model goes.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -57,8 +57,8 @@ mod tests {
             options.height = most;
             let stream = Stream::new(&options, &OutputSpec::parse("v").unwrap());
             // Every fifth direction is none.
-            let text: String =
-                (0..count).map(|i| format!("{i} 0 0 0 0 {}\n", if i % 5 == 4 { 0 } else { 1 })).collect();
+            let line = |i| format!("{i} 0 0 0 0 {}\n", i32::from(i % 5 != 4));
+            let text = (0..count).map(line).collect::<Vec<_>>().concat();
             let requests = selection(&stream, RayReader::new(text.as_bytes(), InputFormat::Ascii));
             requests.iter().map(|r| r.origin.x).collect::<Vec<_>>()
         };
