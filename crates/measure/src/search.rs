@@ -49,7 +49,7 @@ const LEAST: f64 = 1e-12;
 pub const TYPICAL: f64 = 1.2;
 
 /// What true over modelled error stays below in 9 of 10 cases.
-pub const SAFETY: f64 = 1.75;
+pub const SAFETY: f64 = 2.1;
 
 /// Settings of interreflection, as far as the model goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
