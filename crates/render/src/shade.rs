@@ -31,7 +31,7 @@ impl<O: Observer> Walk<'_, O> {
             match node {
                 Node::Material(material) => {
                     let bare = finish;
-                    if !self.gather(ray, next, &mut finish) {
+                    if next != VOID && !self.gather(ray, next, &mut finish) {
                         return true;
                     }
                     ray.material = definition;

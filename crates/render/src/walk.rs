@@ -71,11 +71,16 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// Applies the medium between a ray's origin and its hit.
+    #[inline]
     fn medium(&mut self, ray: &mut Ray<'_>) {
-        let interior = ray.interior;
-        if interior.extinction == Rgb::ZERO {
-            return;
+        if ray.interior.extinction != Rgb::ZERO {
+            self.cross_medium(ray);
         }
+    }
+
+    #[inline(never)]
+    fn cross_medium(&mut self, ray: &mut Ray<'_>) {
+        let interior = ray.interior;
         let t = ray.attenuation();
         ray.value *= t;
         ray.mirrored *= t;
