@@ -143,10 +143,10 @@ fn overlap_is_an_option() {
         let (before, _) = err.split_once(" records").expect("statistics were asked for");
         before.rsplit(' ').next().and_then(|n| n.parse::<u64>().ok()).expect("a number")
     };
-    let counts = ["--overlap 0", "--overlap .2", "--overlap .6"].map(made);
+    let counts = ["--overlap 0", "--overlap .3", "--overlap .6"].map(made);
     println!("{counts:?} records");
     assert!(counts[0] > 5 && counts[0] < counts[1] && counts[1] < counts[2], "{counts:?}");
-    assert_eq!(made(""), counts[1], ".2 unless given");
+    assert_eq!(made(""), counts[1], ".3 unless given");
     for wrong in ["--overlap 1", "--overlap -.1"] {
         let answer = run(wrong);
         assert!(answer.status == Some(1) && answer.err.contains("'--overlap'"), "{wrong}: {}", answer.err);
