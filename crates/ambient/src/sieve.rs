@@ -143,3 +143,44 @@ impl Probe {
         Self { at: [x, y, z, nx, ny, nz].map(i16x8::splat), cosine: i16x8::splat(cosine as i16) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ambit_base::Stream;
+
+    /// Three numbers in [−1, 1).
+    fn three(key: u64) -> DVec3 {
+        DVec3::from_array(Stream::new(0, key).three()) * 2.0 - 1.0
+    }
+
+    /// What qualifies always passes, at every scale, inside the cell and far outside; and not everything passes.
+    #[test]
+    fn nothing_that_qualifies_is_sieved_out() {
+        let (mut qualified, mut passed, mut all) = (0, 0, 0);
+        for key in 0..40_000u64 {
+            let edge = [1e-4, 1.0, 3.7e5][key as usize % 3];
+            let beyond = if key % 8 == 0 { 5.0 } else { 1.0 };
+            let [share, angle, turn] = Stream::new(1, key).three();
+            let reach = edge * (0.5 + 0.5 * share);
+            let record = (three(key + 1_000_000) * 0.75 + 0.5) * edge * beyond;
+            let query = record + three(key + 2_000_000) * reach * 1.2;
+            let normal = three(key + 3_000_000).normalize();
+            let other = (normal + three(key + 4_000_000) * turn).normalize();
+            let (normal, other, angle) = (normal.as_vec3(), other.as_vec3(), angle as f32);
+            let mut block = Block::VACANT;
+            block.set(key as usize % LANES, Mark::new(record, edge, normal, reach, 77));
+            let probe = Probe::new(query, edge, other, angle);
+            let found: Vec<u32> = block.candidates(&probe).collect();
+            assert!(found.is_empty() || found == [77]);
+            let near = (query - record).length() <= reach;
+            let facing = (normal - other).length_squared() < (angle * angle).min(2.0);
+            assert!(!(near && facing) || found == [77], "{key}: {record} {query} {reach} in {edge}");
+            all += 1;
+            qualified += usize::from(near && facing);
+            passed += found.len();
+        }
+        // The allowances let few others pass.
+        assert!(qualified > 2000 && passed < qualified + all / 20, "{qualified} qualify, {passed} of {all} pass");
+    }
+}
