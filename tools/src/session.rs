@@ -216,8 +216,10 @@ impl Session {
                 return Err(Stop::Failure(Failure { class: ambit_cli::Class::System, text: String::new() }));
             }
         }
+        // The main thread is one of them: a step that runs alone costs no change of threads.
         rayon::ThreadPoolBuilder::new()
             .num_threads(common.threads())
+            .use_current_thread()
             .build_global()
             .map_err(|e| Failure::internal(format!("cannot start threads: {e}")))?;
         Ok(())
