@@ -61,9 +61,10 @@ fn mean_tangent(j: usize, rings: usize) -> f64 {
 }
 
 /// The harmonic mean of the sample distances, given their reciprocals; `None` if all are at infinity.
-pub(crate) fn harmonic_mean(nearness: &[f64]) -> Option<f64> {
-    let sum: f64 = nearness.iter().sum();
-    (sum > 0.0).then(|| nearness.len() as f64 / sum)
+pub(crate) fn harmonic_mean(nearness: impl ExactSizeIterator<Item = f64>) -> Option<f64> {
+    let count = nearness.len() as f64;
+    let sum: f64 = nearness.sum();
+    (sum > 0.0).then(|| count / sum)
 }
 
 #[cfg(test)]

@@ -7,25 +7,31 @@ use ambit_base::{DVec3, EPSILON};
 /// Sides of the grid below which the border is too coarse to tell azimuths.
 const MIN_SIDE: usize = 8;
 
-/// The bits of a record: `points` are the sample directions in the frame (tangential components suffice), `nearness`
+/// The bits of a record: `point` gives the sample directions in the frame (tangential components suffice), `nearness`
 /// the reciprocal distances of the closest sample of each cell; `reach` are the radii along the axes turned by `turn`,
 /// times the tolerance.
 ///
 /// Radiance skips occluders nearer than R₋a + 0.001, since its probe would reject the record at its own place; the
 /// look-up here accepts coincident queries without a probe, so the nearest occluders count too.
-pub(crate) fn corral(grid: Grid, points: &[DVec3], nearness: &[f64], reach: [f64; 2], turn: f64) -> u32 {
+pub(crate) fn corral(
+    grid: Grid,
+    point: impl Fn(usize) -> DVec3,
+    nearness: impl Fn(usize) -> f64,
+    reach: [f64; 2],
+    turn: f64,
+) -> u32 {
     if grid.side() < MIN_SIDE {
         return 0;
     }
     let ceiling = grid.ceiling();
-    let overhead = ceiling.iter().map(|&c| nearness[c]).sum::<f64>() / ceiling.len() as f64;
+    let overhead = ceiling.iter().map(|&c| nearness(c)).sum::<f64>() / ceiling.len() as f64;
     if overhead * reach[0] >= 1.0 {
         return 0;
     }
     let spread = grid.spread();
     let mut bits = 0u32;
     for cell in grid.border() {
-        let (near, p) = (nearness[cell], points[cell]);
+        let (near, p) = (nearness(cell), point(cell));
         let flat = p.x.hypot(p.y);
         if near <= EPSILON || flat == 0.0 {
             continue;
@@ -69,7 +75,7 @@ mod tests {
             .collect();
         // A wall at x = 0.1: distance 0.1/p where p > 0.
         let nearness: Vec<f64> = points.iter().map(|p| (p.x / 0.1).max(0.0)).collect();
-        let bits = corral(Grid::Disk { side: 32 }, &points, &nearness, [0.2, 0.2], 0.0);
+        let bits = corral(Grid::Disk { side: 32 }, |c| points[c], |c| nearness[c], [0.2, 0.2], 0.0);
         // cos φ > 0.1/0.2, so azimuths within ±60°: sectors 27…31 and 0…5, those at the ends cut by the border's tilt.
         for k in [0, 1, 2, 3, 28, 29, 30, 31] {
             assert!(bits >> k & 1 == 1, "sector {k} of {bits:032b}");
@@ -78,11 +84,11 @@ mod tests {
             assert!(bits >> k & 1 == 0, "sector {k} of {bits:032b}");
         }
         // Turned axes: the wall moves from azimuth 0 to −90°.
-        let turned = corral(Grid::Disk { side: 32 }, &points, &nearness, [0.2, 0.2], PI / 2.0);
+        let turned = corral(Grid::Disk { side: 32 }, |c| points[c], |c| nearness[c], [0.2, 0.2], PI / 2.0);
         assert_eq!(turned, bits.rotate_right(8));
-        assert_eq!(corral(Grid::Disk { side: 32 }, &points, &nearness, [0.01, 0.01], 0.0), 0);
+        assert_eq!(corral(Grid::Disk { side: 32 }, |c| points[c], |c| nearness[c], [0.01, 0.01], 0.0), 0);
         let ceiling = vec![100.0; n * n];
-        assert_eq!(corral(Grid::Disk { side: 32 }, &points, &ceiling, [0.2, 0.2], 0.0), 0);
+        assert_eq!(corral(Grid::Disk { side: 32 }, |c| points[c], |c| ceiling[c], [0.2, 0.2], 0.0), 0);
     }
 
     #[test]

@@ -2,10 +2,12 @@
 
 use crate::classical;
 use crate::corral::{border, corral};
+use crate::derivatives::Derivatives;
+use crate::edges::Points;
 use crate::grid::Grid;
 use crate::hemisphere::Hemisphere;
 use crate::lookup::{MAX_FACTOR, MIN_FACTOR};
-use crate::mesh::{Derivatives, cover, mesh, rotational};
+use crate::mesh::{cover, mesh, rotational};
 use crate::params::Limits;
 use crate::radii::{Ellipse, circle, ellipse, split_sphere, turned};
 use crate::record::Record;
@@ -100,20 +102,11 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
         return Outcome::Once(value);
     }
     let weight = limits.record_weight(query.level, query.weight);
-    let directions: Vec<DVec3> = (0..cells.len()).map(|c| plan.local(c)).collect();
-    let nearness: Vec<f64> = cells.iter().map(|c| c.nearness).collect();
     let mean = value.mean();
-    let far = 10.0 * limits.edge + 1000.0;
-    let points: Vec<DVec3> = directions.iter().zip(cells).map(|(d, c)| *d * c.distance.min(far)).collect();
     let lit = f64::from(mean) > BLACK;
-    let values: Vec<f64> = if lit {
-        cells.iter().map(|c| f64::from(c.radiance.mean() / mean) - 1.0).collect()
-    } else {
-        vec![0.0; cells.len()]
-    };
     let (shape, rotation) = match grid {
-        Grid::Disk { .. } => curved(limits, weight, grid, &points, &directions, &nearness, lit.then_some(values)),
-        Grid::Polar { .. } => split(limits, weight, grid, &values, cells, &nearness),
+        Grid::Disk { .. } => curved(limits, weight, plan, cells, lit.then_some(mean)),
+        Grid::Polar { .. } => split(limits, weight, grid, cells, lit.then_some(mean)),
     };
     let rotation = turned(rotation, shape.turn);
     let reach = shape.radii.map(|r| r * limits.accuracy);
@@ -129,63 +122,52 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
         radii: shape.radii.map(|r| r as f32),
         gradient: shape.gradient.map(|g| g as f32),
         rotation: rotation.map(|h| h as f32),
-        corral: corral(grid, &directions, &nearness, reach, shape.turn),
+        corral: corral(grid, |c| plan.local(c), |c| cells[c].nearness, reach, shape.turn),
         value,
     };
     if record.is_plausible() { Outcome::Record(record, answer(&record, query)) } else { Outcome::Once(value) }
 }
 
-/// The ellipse of the Hessian and the rotational gradient; `values` are relative radiances less 1, none in the dark.
-fn curved(
-    limits: &Limits,
-    weight: f32,
-    grid: Grid,
-    points: &[DVec3],
-    directions: &[DVec3],
-    nearness: &[f64],
-    values: Option<Vec<f64>>,
-) -> (Ellipse, [f64; 2]) {
-    let n = grid.side();
-    let (derivatives, rotation, least) = if let Some(mut values) = values {
-        for v in &mut values {
-            *v *= 1.0 - FLOOR;
-        }
+/// The ellipse of the Hessian and the rotational gradient of a hemisphere of the given mean radiance; none in the dark.
+fn curved(limits: &Limits, weight: f32, plan: &Hemisphere, cells: &[Cell], mean: Option<f32>) -> (Ellipse, [f64; 2]) {
+    let n = plan.grid().side();
+    let far = 10.0 * limits.edge + 1000.0;
+    let numbered = cells.iter().enumerate();
+    let points = Points::new(numbered.map(|(c, cell)| (plan.local(c), cell.distance.min(far).recip() as f32)));
+    let (derivatives, rotation, least) = if let Some(mean) = mean {
+        let scale = (1.0 - FLOOR) as f32;
+        let values: Vec<f32> = cells.iter().map(|c| scale * (c.radiance.mean() / mean - 1.0)).collect();
         let crowd = 1.0 / (VERY_NEAR * limits.min_radius * limits.accuracy);
-        let crowded = border(n).filter(|&c| nearness[c] > crowd).count() as f64;
+        let crowded = border(n).filter(|&c| cells[c].nearness > crowd).count() as f64;
         let least = crowded > CROWDED * border(n).count() as f64;
-        (mesh(n, points, &values), rotational(n, directions, &values), least)
+        (mesh(n, &points, &values), rotational(n, &points, &values), least)
     } else {
         // Nothing tells how far the dark reaches but the surroundings' shape.
-        (Derivatives { gradient: [0.0; 2], ..cover(n, points) }, [0.0; 2], false)
+        (Derivatives { gradient: [0.0; 2], ..cover(n, &points) }, [0.0; 2], false)
     };
     let shape = if derivatives.is_finite() {
         ellipse(&derivatives, limits, weight, least)
     } else {
-        harmonic(nearness, limits, weight)
+        harmonic(cells, limits, weight)
     };
     (shape, rotation)
 }
 
 /// The circle of the split sphere and the classical gradients.
-fn split(
-    limits: &Limits,
-    weight: f32,
-    grid: Grid,
-    values: &[f64],
-    cells: &[Cell],
-    nearness: &[f64],
-) -> (Ellipse, [f64; 2]) {
+fn split(limits: &Limits, weight: f32, grid: Grid, cells: &[Cell], mean: Option<f32>) -> (Ellipse, [f64; 2]) {
     let (rings, sectors) = (grid.rows(), grid.columns());
+    let value = |cell: &Cell| mean.map_or(0.0, |mean| f64::from(cell.radiance.mean() / mean) - 1.0);
+    let values: Vec<f64> = cells.iter().map(value).collect();
     let distances: Vec<f64> = cells.iter().map(|c| c.distance).collect();
-    let gradient = classical::translational(rings, sectors, values, &distances);
-    let rotation = classical::rotational(rings, sectors, values);
-    let radius = classical::harmonic_mean(nearness).unwrap_or(limits.max_radius);
+    let gradient = classical::translational(rings, sectors, &values, &distances);
+    let rotation = classical::rotational(rings, sectors, &values);
+    let radius = classical::harmonic_mean(cells.iter().map(|c| c.nearness)).unwrap_or(limits.max_radius);
     (split_sphere(radius, gradient, limits, weight), rotation)
 }
 
 /// Without derivatives the harmonic mean of the sample distances tells how fast light may change.
-fn harmonic(nearness: &[f64], limits: &Limits, weight: f32) -> Ellipse {
-    circle(classical::harmonic_mean(nearness).unwrap_or(limits.max_radius), limits, weight)
+fn harmonic(cells: &[Cell], limits: &Limits, weight: f32) -> Ellipse {
+    circle(classical::harmonic_mean(cells.iter().map(|c| c.nearness)).unwrap_or(limits.max_radius), limits, weight)
 }
 
 /// What a record answers at its own place, for a shading normal that textures may have turned.

@@ -23,6 +23,8 @@ mod clamping;
 mod classical;
 mod codec;
 mod corral;
+mod derivatives;
+mod edges;
 mod file;
 mod fill;
 mod finish;

@@ -4,7 +4,7 @@
 //! With the error over a disk `½ΔᵀHΔ` integrated, r = (4/|λ|)^¼ along each eigenvector (Jarosz et al. 2012 with the error
 //! constant of Radiance). The law has the dimension √length: it takes scene units for metres.
 
-use crate::mesh::Derivatives;
+use crate::derivatives::Derivatives;
 use crate::params::Limits;
 use std::f64::consts::FRAC_PI_2;
 
