@@ -1,10 +1,15 @@
 //! The plan of one hemisphere of samples: an n × n grid mapped to the disk so that every cell has equal projected solid
-//! angle (Nusselt analog; Shirley & Chiu 1997 for the concentric map), a random point a cell, a random turn about the normal.
+//! angle (Nusselt analog; Shirley & Chiu 1997 for the concentric map), one point a cell, a random turn about the normal.
+//!
+//! Points move from row to row and from column to column by the golden ratio, all from one random start: each alone is
+//! uniform in its cell, and together they also fall evenly on either axis, as in multi-jittered sampling (Chiu, Shirley, Wang
+//! 1994; Kensler 2013, *Correlated Multi-Jittered Sampling*). Edges that cross many cells are so counted better: in a box with
+//! blocks and in a furnished room the noise of hemispheres of 64 to 529 samples is 0.7 and 0.8 of that of points drawn one by
+//! one. Neighbours stay half a cell's side apart, which the mesh between them needs.
 
 use crate::grid::Grid;
 use crate::params::{ASSUMED_REFLECTANCE, Params, Spacing};
 use crate::sampler::SampleRay;
-use crate::separation::separated;
 use ambit_base::{DVec3, EPSILON, Frame, Stream};
 use std::f64::consts::TAU;
 
@@ -12,8 +17,8 @@ use std::f64::consts::TAU;
 const MIN_SIDE: u32 = 7;
 /// Largest side of the grid: beyond it memory, not noise, is what grows.
 const MAX_SIDE: u32 = 4096;
-/// From this side on first samples of neighbouring cells are kept apart.
-const SEPARATED_SIDE: u32 = 4;
+/// The golden ratio's fraction: its multiples are spread over the unit interval as evenly as can be.
+const GOLDEN: f64 = 0.618_033_988_749_894_8;
 /// Keeps points of the disk off its rim, so that no direction lies in the surface.
 const RIM: f64 = 1.0 - 1e-13;
 
@@ -22,8 +27,6 @@ pub(crate) mod tag {
     pub(crate) const TURN: u64 = 0x7075_726e;
     pub(crate) const CELL: u64 = 0x6365_6c6c;
     pub(crate) const RAY: u64 = 0x0072_6179;
-    pub(crate) const POOL: u64 = 0x706f_6f6c;
-    pub(crate) const TRADE: u64 = 0x7472_6164;
     pub(crate) const EXTRA: u64 = 0x6578_7472;
     pub(crate) const SHARE: u64 = 0x7368_6172;
 }
@@ -35,8 +38,8 @@ pub struct Hemisphere {
     grid: Grid,
     stream: Stream,
     child_weight: f32,
-    /// Points of the unit disk, one a cell, where they have been kept apart; else they are drawn when asked for.
-    points: Vec<[f64; 2]>,
+    /// Where the point lies in the first cell.
+    start: [f64; 2],
 }
 
 impl Hemisphere {
@@ -66,10 +69,7 @@ impl Hemisphere {
         let classical = caching && params.systems.spacing == Spacing::Classical;
         let grid = if classical { Grid::polar(divisions * weight) } else { Grid::Disk { side } };
         let child_weight = if caching { ASSUMED_REFLECTANCE as f32 } else { coefficient / (side * side) as f32 };
-        let frame = Frame::turned(normal, TAU * stream.child(tag::TURN).one());
-        let apart = caching && !classical && side >= SEPARATED_SIDE;
-        let points = if apart { separated(side, stream) } else { Vec::new() };
-        Some(Self { frame, grid, stream, child_weight, points })
+        Some(Self::in_cells(grid, child_weight, normal, stream))
     }
 
     /// Plans a hemisphere of at most `-ad` × `weight` samples, one at least, whose value is not kept. Its rays weigh what
@@ -79,9 +79,12 @@ impl Hemisphere {
             return None;
         }
         let side = ((f64::from(params.divisions) * f64::from(weight)).sqrt() as u32).clamp(1, MAX_SIDE);
+        Some(Self::in_cells(Grid::Disk { side }, ASSUMED_REFLECTANCE as f32, normal, stream))
+    }
+
+    fn in_cells(grid: Grid, child_weight: f32, normal: DVec3, stream: Stream) -> Self {
         let frame = Frame::turned(normal, TAU * stream.child(tag::TURN).one());
-        let child_weight = ASSUMED_REFLECTANCE as f32;
-        Some(Self { frame, grid: Grid::Disk { side }, stream, child_weight, points: Vec::new() })
+        Self { frame, grid, stream, child_weight, start: stream.child(tag::CELL).two() }
     }
 
     /// How it is divided.
@@ -108,10 +111,9 @@ impl Hemisphere {
     /// The sample direction of a cell in the frame (x, y tangential, z along the normal, positive), unit length. Cell
     /// `row · side + column`.
     pub(crate) fn local(&self, cell: usize) -> DVec3 {
-        if let Some(&point) = self.points.get(cell) {
-            return raise(point);
-        }
-        raise(self.grid.point(cell, self.stream.child(tag::CELL ^ (cell as u64) << 32).two()))
+        let (row, column) = self.grid.place(cell);
+        let moved = |start: f64, by: usize| (start + by as f64 * GOLDEN).fract();
+        raise(self.grid.point(cell, [moved(self.start[0], column), moved(self.start[1], row)]))
     }
 
     /// The sample direction of a cell, unit length, world coordinates.
@@ -152,12 +154,6 @@ pub(crate) fn in_cell(side: u32, cell: usize, s: f64, t: f64) -> [f64; 2] {
     [(f64::from(column) + t) / n, (f64::from(row) + s) / n]
 }
 
-/// The random point of a cell.
-pub(crate) fn cell_point(side: u32, cell: usize, stream: Stream) -> [f64; 2] {
-    let [s, t] = stream.child(tag::CELL ^ (cell as u64) << 32).two();
-    in_cell(side, cell, s, t)
-}
-
 /// From the disk to the hemisphere.
 fn raise([p, q]: [f64; 2]) -> DVec3 {
     let (p, q) = (p * RIM, q * RIM);
@@ -182,6 +178,53 @@ mod tests {
         }
         for (divisions, rays) in [(1, 1), (3, 4), (10, 9)] {
             assert_eq!(plan(divisions, false).len(), rays, "-ad {divisions} uncached");
+        }
+    }
+
+    /// Against points drawn one by one in their cells, for an edge across the hemisphere: less noise, and no bias.
+    #[test]
+    fn points_are_even() {
+        let params = Params { divisions: 256, ..Params::default() };
+        let runs = 2000;
+        // Nusselt: the share of directions on one side of a plane is the share of the disk.
+        let beyond = |d: DVec3| f64::from(u8::from(d.x + 0.3 * d.y > 0.2));
+        let mut sums = [[0.0; 2]; 2];
+        for key in 0..runs {
+            let h = Hemisphere::new(&params, 1.0, 1.0, DVec3::Z, Stream::new(0, key), true).unwrap();
+            let drawn = |c: usize| raise(h.grid.point(c, h.stream.split(77, c as u32).two()));
+            let even = (0..h.len()).map(|c| beyond(h.direction(c))).sum::<f64>() / h.len() as f64;
+            let single = (0..h.len()).map(|c| beyond(drawn(c))).sum::<f64>() / h.len() as f64;
+            for (sums, share) in sums.iter_mut().zip([even, single]) {
+                sums[0] += share / runs as f64;
+                sums[1] += share * share / runs as f64;
+            }
+        }
+        let [even, single] = sums.map(|[mean, square]| (square - mean * mean).sqrt());
+        // A chord at distance d cuts (acos d − d √(1 − d²))/π off the disk.
+        let d = 0.2 / 1.0f64.hypot(0.3);
+        let exact = (d.acos() - d * (1.0 - d * d).sqrt()) / std::f64::consts::PI;
+        assert!((sums[0][0] - exact).abs() < 4.0 * even / (runs as f64).sqrt(), "{} for {exact}", sums[0][0]);
+        // The ratio is 0.80 ± 0.02 for a straight edge.
+        assert!(even < 0.86 * single, "{even} and {single}");
+    }
+
+    #[test]
+    fn neighbours_stay_apart() {
+        for side in [7u32, 8, 16, 33] {
+            let h = plan((side * side) as i32, true);
+            let n = side as usize;
+            let square = |c: usize| {
+                let d = h.local(c);
+                ambit_base::disk_to_square(d.x, d.y).map(|x| x * f64::from(side))
+            };
+            for c in 0..n * n {
+                for other in [c + 1, c + n, c + n + 1, c + n - 1] {
+                    if other < n * n && (c % n).abs_diff(other % n) <= 1 {
+                        let ([a, b], [p, q]) = (square(c), square(other));
+                        assert!((a - p).hypot(b - q) > 0.5, "{c} and {other} of {n}");
+                    }
+                }
+            }
         }
     }
 

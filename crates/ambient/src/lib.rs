@@ -41,7 +41,6 @@ mod record;
 mod reuse;
 mod sampler;
 mod select;
-mod separation;
 mod sieve;
 mod store;
 mod supersample;
