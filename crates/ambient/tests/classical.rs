@@ -58,14 +58,19 @@ fn radii_are_harmonic_mean_distances() {
 /// Records whose noise is averaged.
 const RUNS: u64 = 20;
 
-/// Holds the mean of runs to what it should be: within four of its standard errors, which must themselves be small.
+/// 1024 samples make 57 sectors; light at an edge acts where the nearest borders of sectors are, which makes its mean the
+/// smaller by sinc²(π/57), 1 − (π/57)²/3.
+const SECTORS: f64 = 1e-3;
+
+/// Holds the mean of runs to what it should be: within four of its standard errors, which must themselves be small, and
+/// what sectors make of it.
 fn holds(runs: &[f64], want: f64, most: f64, what: &str) {
     let n = runs.len() as f64;
     let mean = runs.iter().sum::<f64>() / n;
     let error = (runs.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0) / n).sqrt();
     println!("{what}: {mean} ± {error} for {want}");
     assert!(error < most, "{what}: {mean} ± {error} says little about {want}");
-    assert!((mean - want).abs() <= 4.0 * error, "{what}: {mean} ± {error} for {want}");
+    assert!((mean - want).abs() <= 4.0 * error + SECTORS * want, "{what}: {mean} ± {error} for {want}");
 }
 
 #[test]
