@@ -70,11 +70,6 @@ impl Points {
         columns
     }
 
-    /// How many there are.
-    pub(crate) fn len(&self) -> usize {
-        self.len
-    }
-
     /// Tangential components of the direction to a point.
     pub(crate) fn tangential(&self, k: usize) -> [f32; 2] {
         [self.x[k], self.y[k]]
@@ -95,68 +90,91 @@ fn load(column: &[f32], k: usize) -> f32x8 {
     f32x8::from(<[f32; LANES]>::try_from(&column[k..k + LANES]).expect("a range of eight"))
 }
 
-/// Weights of a row of edges, with room for whole groups of eight.
+/// Weights of many edges, with room for whole groups of eight.
 pub(crate) struct Weights {
     weights: Vec<f32>,
     len: usize,
 }
 
 impl Weights {
-    /// Room for `len` edges.
+    /// Of `len` edges, 0 each.
     pub(crate) fn new(len: usize) -> Self {
         Self { weights: vec![0.0; len.next_multiple_of(LANES)], len }
     }
 
     /// The weights, to be set.
-    pub(crate) fn row(&mut self) -> &mut [f32] {
+    pub(crate) fn all(&mut self) -> &mut [f32] {
         &mut self.weights[..self.len]
     }
 }
 
+/// Groups whose sums are kept in single precision.
+const RUN: usize = 32;
+
 /// Adds the edges from the points `from`, `from + 1` … to the points `to`, `to + 1` …, as many as there are weights.
 pub(crate) fn add_edges(sum: &mut Derivatives, points: &Points, from: usize, to: usize, weights: &Weights) {
-    let zero = f32x8::ZERO;
-    let [mut gx, mut gy, mut hxx, mut hxy, mut hyy] = [zero; 5];
-    for (group, weights) in weights.weights.chunks_exact(LANES).enumerate() {
-        let weight = load(weights, 0);
-        // Beyond the last point of the last row there is nothing to read.
-        let last = points.len();
-        let ([ax, ay, az, near_a], [bx, by, bz, near_b]) =
-            (points.eight((from + group * LANES).min(last)), points.eight((to + group * LANES).min(last)));
+    for (run, weights) in weights.weights.chunks(LANES * RUN).enumerate() {
+        let mut sums = Sums::default();
+        for (group, weights) in weights.chunks_exact(LANES).enumerate() {
+            let k = (run * RUN + group) * LANES;
+            sums.add(points.eight(from + k), points.eight(to + k), load(weights, 0));
+        }
+        sums.add_to(sum);
+    }
+}
+
+/// Sums over eight lanes: ∇F times 2π, H times π.
+#[derive(Default)]
+struct Sums {
+    gx: f32x8,
+    gy: f32x8,
+    hxx: f32x8,
+    hxy: f32x8,
+    hyy: f32x8,
+}
+
+impl Sums {
+    /// Adds eight edges.
+    #[inline]
+    fn add(&mut self, [ax, ay, az, near_a]: [f32x8; 4], [bx, by, bz, near_b]: [f32x8; 4], weight: f32x8) {
         // |v|² = 1 − u(1−u)|r̂ − ŝ|².
-        let (dx, dy, dz) = (ax - bx, ay - by, az - bz);
+        let (dx, dy, dz) = (bx - ax, by - ay, bz - az);
         let chord2 = dx * dx + dy * dy + dz * dz;
+        let rise = near_b - near_a;
+        let zero = f32x8::ZERO;
         let [mut i1, mut qx, mut qy, mut i2, mut mxx, mut mxy, mut myy] = [zero; 7];
         for (u, share) in NODES {
-            let along = |a: f32x8, b: f32x8| a * (1.0 - u) + b * u;
-            let (vx, vy, f) = (along(ax, bx), along(ay, by), along(near_a, near_b));
             let inverse = f32x8::ONE / (f32x8::ONE - chord2 * (u * (1.0 - u)));
-            let near = f * inverse;
-            let (wx, wy) = (vx * near, vy * near);
-            i1 += inverse * share;
-            qx += wx * inverse * share;
-            qy += wy * inverse * share;
+            let near = (near_a + rise * u) * inverse;
+            let (wx, wy) = ((ax + dx * u) * near, (ay + dy * u) * near);
+            let inverse = inverse * share;
+            i1 += inverse;
+            let (sx, sy) = (wx * inverse, wy * inverse);
+            qx += sx;
+            qy += sy;
             i2 += near * near * share;
-            mxx += wx * wx * inverse * share;
-            mxy += wx * wy * inverse * share;
-            myy += wy * wy * inverse * share;
+            mxx += wx * sx;
+            mxy += wx * sy;
+            myy += wy * sy;
         }
         // N × e over r s, and N · c over r s.
-        let (ex, ey) = (ay * near_b - by * near_a, bx * near_a - ax * near_b);
+        let (ex, ey) = ((ay * near_b - by * near_a) * weight, (bx * near_a - ax * near_b) * weight);
         let cz = (ax * by - ay * bx) * weight;
-        let (ex, ey) = (ex * weight, ey * weight);
-        gx += i1 * ex + cz * qx * 2.0;
-        gy += i1 * ey + cz * qy * 2.0;
-        hxx += ex * qx * 2.0 + cz * (mxx * 4.0 - i2);
-        hxy += ex * qy + ey * qx + cz * mxy * 4.0;
-        hyy += ey * qy * 2.0 + cz * (myy * 4.0 - i2);
+        self.gx += i1 * ex + cz * qx * 2.0;
+        self.gy += i1 * ey + cz * qy * 2.0;
+        self.hxx += ex * qx * 2.0 + cz * (mxx * 4.0 - i2);
+        self.hxy += ex * qy + ey * qx + cz * mxy * 4.0;
+        self.hyy += ey * qy * 2.0 + cz * (myy * 4.0 - i2);
     }
-    let total = |lanes: f32x8| lanes.to_array().into_iter().map(f64::from).sum::<f64>();
-    for (to, lanes) in sum.gradient.iter_mut().zip([gx, gy]) {
-        *to += 0.5 * FRAC_1_PI * total(lanes);
-    }
-    for (to, lanes) in sum.hessian.iter_mut().zip([hxx, hxy, hyy]) {
-        *to += FRAC_1_PI * total(lanes);
+
+    fn add_to(self, sum: &mut Derivatives) {
+        let total = |lanes: f32x8| lanes.to_array().into_iter().map(f64::from).sum::<f64>();
+        for (to, lanes) in sum.gradient.iter_mut().zip([self.gx, self.gy]) {
+            *to += 0.5 * FRAC_1_PI * total(lanes);
+        }
+        for (to, lanes) in sum.hessian.iter_mut().zip([self.hxx, self.hxy, self.hyy]) {
+            *to += FRAC_1_PI * total(lanes);
+        }
     }
 }
 
@@ -189,7 +207,7 @@ mod tests {
                 exact.add_edge(a * r, b * s, w);
                 let points = Points::new([(a, (1.0 / r) as f32), (b, (1.0 / s) as f32)].into_iter());
                 let mut weights = Weights::new(1);
-                weights.row()[0] = w as f32;
+                weights.all()[0] = w as f32;
                 let mut sum = Derivatives::default();
                 add_edges(&mut sum, &points, 0, 1, &weights);
                 let near = 1.0 / r.min(s);
@@ -206,7 +224,7 @@ mod tests {
     fn coincident_points_add_nothing() {
         let points = Points::new([(DVec3::Z, 2.0); 9].into_iter());
         let mut weights = Weights::new(8);
-        weights.row().fill(1.0);
+        weights.all().fill(1.0);
         let mut sum = Derivatives::default();
         add_edges(&mut sum, &points, 0, 1, &weights);
         assert_eq!(sum, Derivatives::default());

@@ -58,11 +58,6 @@ impl Grid {
         }
     }
 
-    /// Row and column of a cell.
-    pub(crate) fn place(self, cell: usize) -> (usize, usize) {
-        (cell / self.columns(), cell % self.columns())
-    }
-
     /// The point of the unit disk that (s, t) in the unit square stands for in a cell.
     pub(crate) fn point(self, cell: usize, [s, t]: [f64; 2]) -> [f64; 2] {
         match self {

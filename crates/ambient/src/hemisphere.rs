@@ -38,8 +38,8 @@ pub struct Hemisphere {
     grid: Grid,
     stream: Stream,
     child_weight: f32,
-    /// Where the point lies in the first cell.
-    start: [f64; 2],
+    /// Sample directions in the frame, one a cell.
+    locals: Vec<DVec3>,
 }
 
 impl Hemisphere {
@@ -84,7 +84,19 @@ impl Hemisphere {
 
     fn in_cells(grid: Grid, child_weight: f32, normal: DVec3, stream: Stream) -> Self {
         let frame = Frame::turned(normal, TAU * stream.child(tag::TURN).one());
-        Self { frame, grid, stream, child_weight, start: stream.child(tag::CELL).two() }
+        let start = stream.child(tag::CELL).two();
+        let moved = |start: f64, by: usize| (start + by as f64 * GOLDEN).fract();
+        let across: Vec<f64> = (0..grid.columns()).map(|column| moved(start[0], column)).collect();
+        let mut locals = Vec::with_capacity(grid.len());
+        for row in 0..grid.rows() {
+            let along = moved(start[1], row);
+            locals.extend(
+                (0..)
+                    .zip(&across)
+                    .map(|(column, &across)| raise(grid.point(row * grid.columns() + column, [across, along]))),
+            );
+        }
+        Self { frame, grid, stream, child_weight, locals }
     }
 
     /// How it is divided.
@@ -111,9 +123,7 @@ impl Hemisphere {
     /// The sample direction of a cell in the frame (x, y tangential, z along the normal, positive), unit length. Cell
     /// `row · side + column`.
     pub(crate) fn local(&self, cell: usize) -> DVec3 {
-        let (row, column) = self.grid.place(cell);
-        let moved = |start: f64, by: usize| (start + by as f64 * GOLDEN).fract();
-        raise(self.grid.point(cell, [moved(self.start[0], column), moved(self.start[1], row)]))
+        self.locals[cell]
     }
 
     /// The sample direction of a cell, unit length, world coordinates.

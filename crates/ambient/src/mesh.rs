@@ -19,38 +19,37 @@ pub(crate) fn mesh(n: usize, points: &Points, values: &[f32]) -> Derivatives {
     // What the strips below the mesh's rim have, along each side counter-clockwise.
     let strip = |a: usize, b: usize| values[farther(a, b)];
     let last = n - 1;
-    let mut sum = Derivatives::default();
-    let (mut rows, mut columns, mut diagonals) = (Weights::new(last), Weights::new(n), Weights::new(last));
-    // The radiances of the triangles above the row of points: those across from the row's points.
-    let mut above: Vec<f32> = (0..last).map(|j| strip(j, j + 1)).collect();
-    for i in 0..n {
+    // Edges to the right, down and along the diagonal (i,j+1)–(i+1,j) that cuts quads, from each cell that has them.
+    let mut right = Weights::new(last * n + last);
+    let mut down = Weights::new(last * n);
+    let mut diagonal = Weights::new(last * n);
+    let (rights, downs, diagonals) = (right.all(), down.all(), diagonal.all());
+    for (j, weight) in rights[..last].iter_mut().enumerate() {
+        *weight = -strip(j, j + 1);
+    }
+    for i in 0..last {
         let at = i * n;
-        if i == last {
-            // The strip below the last row runs against it.
-            for (j, (weight, above)) in rows.row().iter_mut().zip(&above).enumerate() {
-                *weight = strip(at + j + 1, at + j) - above;
-            }
-            add_edges(&mut sum, points, at, at + 1, &rows);
-            break;
-        }
-        // Quads are cut along (i,j+1)–(i+1,j).
         let mut left = strip(at + n, at);
-        let (row, column, diagonal) = (rows.row(), columns.row(), diagonals.row());
         for j in 0..last {
-            let (here, right, below, across) = (at + j, at + j + 1, at + n + j, at + n + j + 1);
-            let first = values[farther(farther(here, right), below)];
-            let second = values[farther(farther(across, below), right)];
-            row[j] = first - above[j];
-            column[j] = left - first;
-            diagonal[j] = first - second;
-            above[j] = second;
+            let (here, beside, below, across) = (at + j, at + j + 1, at + n + j, at + n + j + 1);
+            let first = values[farther(farther(here, beside), below)];
+            let second = values[farther(farther(across, below), beside)];
+            rights[here] += first;
+            rights[below] -= second;
+            downs[here] = left - first;
+            diagonals[here] = first - second;
             left = second;
         }
-        column[last] = left - strip(at + last, at + n + last);
-        add_edges(&mut sum, points, at, at + 1, &rows);
-        add_edges(&mut sum, points, at, at + n, &columns);
-        add_edges(&mut sum, points, at + 1, at + n, &diagonals);
+        downs[at + last] = left - strip(at + last, at + n + last);
     }
+    // The strip below the last row runs against it.
+    for (j, weight) in rights.iter_mut().enumerate().skip(last * n) {
+        *weight += strip(j + 1, j);
+    }
+    let mut sum = Derivatives::default();
+    add_edges(&mut sum, points, 0, 1, &right);
+    add_edges(&mut sum, points, 0, n, &down);
+    add_edges(&mut sum, points, 1, n, &diagonal);
     let rim = rim(n);
     for (k, &a) in rim.iter().enumerate() {
         let b = rim[(k + 1) % rim.len()];
@@ -81,7 +80,7 @@ pub(crate) fn cover(n: usize, points: &Points) -> Derivatives {
     // The loop's first point once more at its end.
     let around = points.picked(rim.iter().copied().chain(rim.first().copied()).collect::<Vec<_>>().into_iter());
     let mut weights = Weights::new(rim.len());
-    weights.row().fill(1.0);
+    weights.all().fill(1.0);
     let mut sum = Derivatives::default();
     add_edges(&mut sum, &around, 0, 1, &weights);
     sum

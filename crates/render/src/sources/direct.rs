@@ -8,6 +8,7 @@ use crate::sources::partition::{Part, parts};
 use crate::sources::{Emitter, Source, SourceId};
 use crate::walk::Walk;
 use ambit_base::{Colour, DVec3, EPSILON, FAR, Rgb, Stream, mix};
+use ambit_scene::VOID;
 use ambit_trace::Shadow;
 
 /// A sample that could light the point.
@@ -24,9 +25,9 @@ pub(crate) struct Candidate {
 
 /// A sample of one part of a source.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
+pub(crate) struct Sample {
     pub(super) direction: DVec3,
-    distance: f64,
+    pub(super) distance: f64,
     pub(super) solid_angle: f64,
 }
 
@@ -61,6 +62,7 @@ impl<O: Observer> Walk<'_, O> {
         } else {
             f64::INFINITY
         };
+        let own = ray.hit.as_ref().filter(|_| self.is_flat(ray)).map_or(VOID, |h| h.object);
         for (id, source) in scene.sources.iter().enumerate() {
             if !source.sampled
                 || source.is_out_of_reach(ray.point)
@@ -78,9 +80,7 @@ impl<O: Observer> Walk<'_, O> {
                 if k.max_element() <= 0.0 {
                     continue;
                 }
-                if known
-                    && scene.obstacles.block(id, source, &scene.world, ray.point, sample.direction, sample.distance)
-                {
+                if known && scene.obstacles.block(id, source, &scene.world, own, ray.point, &sample) {
                     self.work.note_test(id as SourceId, false);
                     self.work.known_blocked.push(id as SourceId);
                     continue;

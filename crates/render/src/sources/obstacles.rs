@@ -5,6 +5,7 @@
 //! estimate for untested sources honest where many sources are blocked. The table is made once and never changes, so
 //! nothing depends on the order of rays.
 
+use super::direct::Sample;
 use super::emitter::{Emitter, Source};
 use crate::prepare::Modifiers;
 use ambit_base::{DVec3, EPSILON, FAR, Frame};
@@ -47,18 +48,23 @@ impl Obstacles {
         Self { tables: sources[..sources.len().min(MOST)].par_iter().map(table).collect() }
     }
 
-    /// True if the obstacle known for `point` blocks the sample of source `id` in unit direction `l` at `distance`.
+    /// True if the obstacle known for `point` blocks a sample of source `id`.
+    /// `own` is the surface that the point lies on if that is flat, so that it cannot shade itself, else [`VOID`].
     pub(crate) fn block(
         &self,
         id: usize,
         source: &Source,
         world: &World,
+        own: ObjectId,
         point: DVec3,
-        l: DVec3,
-        distance: f64,
+        sample: &Sample,
     ) -> bool {
+        let Sample { direction: l, distance, .. } = *sample;
         let Some(table) = self.tables.get(id) else { return false };
         let Some(obstacle) = table.at(source, point) else { return false };
+        if obstacle == own {
+            return false;
+        }
         let ray = Ray { origin: point, direction: l, limit: FAR };
         if world.bends(&ray) {
             return false;
