@@ -8,6 +8,7 @@ use crate::expr::{Callee, Definition, Expr};
 use crate::flow::{leads, occurrences};
 use crate::names::EntryId;
 use crate::op::Op;
+use crate::panel;
 
 /// Operations after which calls are no longer written in line.
 const INLINE_CODE: usize = 8192;
@@ -203,13 +204,15 @@ impl<'l> Emitter<'l> {
         match function {
             Builtin::If => return self.choice(list, environment),
             Builtin::Select => return self.select(list, environment),
-            Builtin::PrismValue => return self.fault(Fault::Unsupported(function.name())),
-            Builtin::Arg | Builtin::SourceCorr => self.reals = true,
+            Builtin::Arg | Builtin::SourceCorr | Builtin::PrismValue => self.reals = true,
             _ => {}
         }
         if matches!(function, Builtin::SourceCorr | Builtin::SourceTheta | Builtin::SourcePhi) {
             use Channel::{Dx, Dy, Dz, Px, Py, Pz, Rdot, Ts};
             self.channels = self.channels.union(ChannelSet::of(&[Dx, Dy, Dz, Px, Py, Pz, Rdot, Ts]));
+        }
+        if function == Builtin::PrismValue {
+            self.channels = self.channels.union(panel::inputs());
         }
         let variadic = matches!(function, Builtin::Min | Builtin::Max);
         let arity = if variadic { list.len() } else { function.arity() as usize };

@@ -38,6 +38,7 @@ mod library;
 mod names;
 mod noise;
 mod op;
+mod panel;
 mod parse;
 mod program;
 mod run;

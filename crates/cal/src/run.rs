@@ -8,6 +8,7 @@ use crate::error::{Fault, Flag, Warning};
 use crate::fractal::fnoise3;
 use crate::noise::{noise3, noise3x, noise3y, noise3z};
 use crate::op::Op;
+use crate::panel;
 use crate::program::Program;
 use crate::scratch::{DONE, Inputs, Pass, Remembered, Return, Scratch, Slot, State, UNSET};
 use crate::source;
@@ -160,6 +161,10 @@ pub(crate) fn run(program: &Program, given: &[f64], pass: &mut Pass<'_>) -> Resu
                 let value = match function {
                     Builtin::Atan2 => acc.atan2(pop!()),
                     Builtin::SourceCorr => source::correction(ray(inputs.channels)?, inputs.reals, pop!(), acc)?,
+                    Builtin::PrismValue => {
+                        let side = pop!();
+                        panel::value(&mut s.panel, ray(inputs.channels)?, inputs.reals, [pop!(), side, acc])?
+                    }
                     _ => {
                         let y = pop!();
                         ternary(function, [pop!(), y, acc])?

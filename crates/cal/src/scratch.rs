@@ -1,6 +1,7 @@
 //! What changes while programs run: one scratch a thread, one pass for each primitive at each ray.
 
 use crate::error::{Fault, Flag, Warning};
+use crate::panel;
 use crate::program::Program;
 use crate::run::run;
 
@@ -63,6 +64,8 @@ pub(crate) struct State {
     pub(crate) clock: u64,
     pub(crate) flag: Flag,
     pub(crate) history: bool,
+    /// What `fprism_val` found last, once it is used.
+    pub(crate) panel: Option<Box<panel::Answer>>,
     warnings: Vec<Warning>,
 }
 
