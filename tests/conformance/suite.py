@@ -92,8 +92,15 @@ def direct(scene, ours, theirs):
 
 def runs(side, first, count, get):
     """What get(options) returns in runs `first` to `count`: the first with fixed random numbers, then with others each."""
-    other = lambda run: ["--seed", str(run)] if side.name == "ours" else ["-u+"]
-    return [get([] if run == 0 else other(run)) for run in range(first, count)]
+    def one(run):
+        if run == 0:
+            return get([])
+        if side.name == "ours":
+            return get(["--seed", str(run)])
+        # Radiance takes its seed from the clock, in seconds: runs within one second would be the same.
+        time.sleep(1.05)
+        return get(["-u+"])
+    return [one(run) for run in range(first, count)]
 
 
 def judge(check, ours, theirs, reference):
