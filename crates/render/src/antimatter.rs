@@ -74,10 +74,9 @@ fn inside(ray: &Ray<'_>, m: &Antimatter) -> i32 {
     let mut link = ray;
     while let Some(parent) = link.parent {
         let reflected = Kinds::REFLECTED.union(Kinds::SPECULAR_REFLECTED).union(Kinds::AMBIENT_REFLECTED);
-        if link.kind.meets(reflected.union(Kinds::SHADOW_REFLECTED)) {
-            break;
-        }
-        if let Some(hit) = &parent.hit
+        // Where it was reflected, a ray did not cross.
+        if !link.kind.meets(reflected.union(Kinds::SHADOW_REFLECTED))
+            && let Some(hit) = &parent.hit
             && m.listed.binary_search(&hit.modifier).is_ok()
         {
             count += if hit.cosine > 0.0 { 1 } else { -1 };
