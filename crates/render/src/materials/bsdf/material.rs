@@ -115,9 +115,9 @@ impl<O: Observer> Walk<'_, O> {
         // Behind a stand-in light starts where what it stands for ends.
         let beyond = here - geometric * thickness;
         let mut near = lit.near;
-        near += Rgb::splat(self.sample_bsdf(ray, &lit, Sampling { transmitted: false, geometric, origin: here }));
+        near += Rgb::splat(self.sample_bsdf(ray, &lit, Sampling { transmitted: false, origin: here }));
         self.see_through(ray, through.as_ref(), finish.pattern);
-        let lumped = self.sample_bsdf(ray, &lit, Sampling { transmitted: true, geometric, origin: beyond });
+        let lumped = self.sample_bsdf(ray, &lit, Sampling { transmitted: true, origin: beyond });
         let far = lit.far + finish.pattern * lumped;
         let normal = facing.normal * side;
         self.positive_ambient(ray, near, normal);

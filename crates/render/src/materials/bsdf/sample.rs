@@ -18,8 +18,6 @@ const JITTER: u64 = 0xb3;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sampling {
     pub(super) transmitted: bool,
-    /// The surface's own normal.
-    pub(super) geometric: DVec3,
     pub(super) origin: DVec3,
 }
 
@@ -52,7 +50,6 @@ impl<O: Observer> Walk<'_, O> {
         let wanted = if ss > SEVERAL_FROM { (ss * f64::from(ray.weight) + 0.5).floor().max(1.0) as u32 } else { 1 };
         let kind = if sampling.transmitted { Kinds::SPECULAR_TRANSMITTED } else { Kinds::SPECULAR_REFLECTED };
         let hemisphere = if sampling.transmitted { -lit.view.z } else { lit.view.z };
-        let outwards = if sampling.transmitted { -ray.cosine() } else { ray.cosine() };
         let mut sum = Rgb::ZERO;
         for i in 0..wanted {
             let numbers = if i == 0 { stream.two() } else { stream.split(tag, i).two() };
@@ -62,11 +59,8 @@ impl<O: Observer> Walk<'_, O> {
             if through.is_some_and(|t| t.contains(local)) {
                 continue;
             }
+            // Where a texture tilts the normal, some go to the wrong side of the surface. Their light is not lost.
             let direction = lit.axes.to_world(local).normalize();
-            // A tilted normal may send light to the wrong side of the surface.
-            if direction.dot(sampling.geometric) * outwards <= 0.0 {
-                continue;
-            }
             let Some(cell) = lobe.cell(view, local) else { continue };
             let mut k = lobe.colour(&cell, view, local).hue() * (lobe.total(view) / f64::from(wanted)) as f32;
             if sampling.transmitted {

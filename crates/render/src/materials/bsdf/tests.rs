@@ -294,6 +294,8 @@ fn faults_are_named_with_their_line() {
     let (text, line) = bad("</Layer>", "");
     assert!(text.starts_with("File format error: BSDF \"dir/test.xml\" [error near line 5]: "), "{text}");
     assert_eq!(line, 5);
+    let cut = |until: &str| error(good.split_once(until).expect("it is there").0).1;
+    assert_eq!((cut("<Optical"), cut("</DataDefinition"), cut("</ScatteringData")), (2, 2, 4), "where a cut file ends");
     for (numbers, problem) in [
         ("0.1", "Missing '{' in tensor tree"),
         ("{ 0.1", "Missing '}' in tensor tree"),

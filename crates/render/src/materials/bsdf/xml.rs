@@ -93,9 +93,16 @@ impl Place<'_> {
     /// Checks that a text is XML at all.
     pub(super) fn document<'x>(&self, text: &'x str) -> Result<Document<'x>, ReadError> {
         Document::parse(text).map_err(|e| {
-            let p = e.pos();
-            let near = format!("File format error: BSDF \"{}\" [error near line {}]: {e}", self.path, p.row);
-            self.error(p.row, p.col, near)
+            let (row, column) = match &e {
+                // Told without a place: it is the end.
+                roxmltree::Error::UnclosedRootNode | roxmltree::Error::UnexpectedEndOfStream => {
+                    let last = text.lines().last().unwrap_or_default();
+                    (text.lines().count().max(1) as u32, last.chars().count() as u32 + 1)
+                }
+                _ => (e.pos().row, e.pos().col),
+            };
+            let near = format!("File format error: BSDF \"{}\" [error near line {row}]: {e}", self.path);
+            self.error(row, column, near)
         })
     }
 }
