@@ -17,9 +17,15 @@ const SLOTS: usize = 6;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {
     pub(crate) distance: f64,
-    pub(crate) object: ObjectId,
     /// Where the surface lies in the world's tables, see [`crate::node::place`].
     pub(crate) place: u32,
+}
+
+/// What decides ties: looked up only where there are some.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Standing {
+    pub(crate) object: ObjectId,
+    pub(crate) rank: Rank,
     pub(crate) front: bool,
 }
 
@@ -52,7 +58,7 @@ pub(crate) struct Best {
 impl Best {
     /// Nothing found; hits at or beyond `limit`, or beyond `bound`, are refused.
     pub(crate) fn new(limit: f64, bound: f64) -> Self {
-        let none = Candidate { distance: 0.0, object: 0, place: 0, front: false };
+        let none = Candidate { distance: 0.0, place: 0 };
         Self { bound: bound.min(limit.next_down()), nearest: f64::INFINITY, count: 0, ties: [none; SLOTS], inner: None }
     }
 
@@ -63,20 +69,20 @@ impl Best {
     }
 
     /// Takes a surface hit no farther than the bound.
-    #[inline]
-    pub(crate) fn offer(&mut self, c: Candidate, rank: impl Fn(&Candidate) -> Rank) {
+    #[inline(always)]
+    pub(crate) fn offer(&mut self, c: Candidate, standing: impl Fn(&Candidate) -> Standing) {
         if c.distance < self.nearest - EPSILON {
             self.ties[0] = c;
             self.count = 1;
             self.nearest = c.distance;
             self.bound = self.bound.min(c.distance + EPSILON);
         } else {
-            self.tie(c, rank);
+            self.tie(c, standing);
         }
     }
 
     #[cold]
-    fn tie(&mut self, c: Candidate, rank: impl Fn(&Candidate) -> Rank) {
+    fn tie(&mut self, c: Candidate, standing: impl Fn(&Candidate) -> Standing) {
         self.approach(c.distance);
         let far = self.nearest + EPSILON;
         let mut kept = 0;
@@ -87,8 +93,8 @@ impl Best {
             }
         }
         if kept == SLOTS {
-            self.ties.sort_unstable_by_key(|t| std::cmp::Reverse(t.object));
-            if !beats(&self.ties[0], &self.ties[1], &rank) {
+            self.ties.sort_unstable_by_key(|t| std::cmp::Reverse(standing(t).object));
+            if !beats(&standing(&self.ties[0]), &standing(&self.ties[1])) {
                 self.ties[0] = self.ties[1];
             }
             self.ties.copy_within(2.., 1);
@@ -117,35 +123,38 @@ impl Best {
     }
 
     /// Judges the ties.
-    #[inline]
-    pub(crate) fn winner(&mut self, rank: impl Fn(&Candidate) -> Rank) -> Option<Winner> {
+    #[inline(always)]
+    pub(crate) fn winner(&mut self, standing: impl Fn(&Candidate) -> Standing) -> Option<Winner> {
         if self.count == 1 && self.inner.is_none() {
             return Some(Winner::Surface(self.ties[0]));
         }
         if self.count == 0 {
             return self.inner.map(Winner::Inner);
         }
-        Some(self.judge(rank))
+        Some(self.judge(standing))
     }
 
     #[cold]
-    fn judge(&mut self, rank: impl Fn(&Candidate) -> Rank) -> Winner {
+    fn judge(&mut self, standing: impl Fn(&Candidate) -> Standing) -> Winner {
         let far = self.nearest + EPSILON;
         let n = self.count;
-        self.ties[..n].sort_unstable_by_key(|t| std::cmp::Reverse(t.object));
+        self.ties[..n].sort_unstable_by_key(|t| std::cmp::Reverse(standing(t).object));
         let mut inner = self.inner.filter(|i| i.hit.distance <= far);
         let mut best: Option<Winner> = None;
         for t in &self.ties[..n] {
             if t.distance > far {
                 continue;
             }
-            if let Some(i) = inner.filter(|i| i.owner > t.object) {
+            let own = standing(t);
+            if let Some(i) = inner.filter(|i| i.owner > own.object) {
                 best = Some(enter(best, i));
                 inner = None;
             }
             best = Some(match best {
-                Some(Winner::Surface(b)) if beats(&b, t, &rank) => Winner::Surface(b),
-                Some(Winner::Inner(i)) if key(i.rank, i.hit.cosine > 0.0) >= key(rank(t), t.front) => Winner::Inner(i),
+                Some(Winner::Surface(b)) if beats(&standing(&b), &own) => Winner::Surface(b),
+                Some(Winner::Inner(i)) if key(i.rank, i.hit.cosine > 0.0) >= key(own.rank, own.front) => {
+                    Winner::Inner(i)
+                }
                 _ => Winner::Surface(*t),
             });
         }
@@ -171,6 +180,6 @@ fn key(rank: Rank, front: bool) -> (crate::ray::Opacity, bool, ObjectId) {
 }
 
 /// Does `first`, defined later or the same, stay ahead of `second`?
-fn beats(first: &Candidate, second: &Candidate, rank: impl Fn(&Candidate) -> Rank) -> bool {
-    key(rank(first), first.front) >= key(rank(second), second.front)
+fn beats(first: &Standing, second: &Standing) -> bool {
+    key(first.rank, first.front) >= key(second.rank, second.front)
 }

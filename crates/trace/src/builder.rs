@@ -1,17 +1,18 @@
 //! Collects surfaces, instances and meshes, and builds a [`World`] from them.
 
+use crate::block::{LANES, Scale};
 use crate::bounds::{self, Box32};
-use crate::facet::{Facet, Facets, LANES};
+use crate::facet::{Facet, Facets};
 use crate::frame::Frame;
 use crate::item::{Content, Item, Placed};
 use crate::mesh::Mesh;
 use crate::node::{self, ITEMS, NOWHERE, QUADS, TRIANGLES};
-use crate::pages;
 use crate::polygon::{self, Outline};
+use crate::quadric::Frustum;
 use crate::ray::Rank;
 use crate::simd::Vector;
 use crate::tree::{self, Tree};
-use crate::walk::{STACK, stack_needed};
+use crate::walk::{Gate, STACK, stack_needed};
 use crate::world::World;
 use ambit_base::Transform;
 use ambit_scene::{Bounds, ObjectId, Polygon, Shape};
@@ -36,14 +37,6 @@ pub enum BuildError {
         /// Number of the triangle, from 0.
         triangle: usize,
     },
-}
-
-/// A facet as it waits for the tree.
-#[derive(Clone, Copy, Debug)]
-struct Kept<const K: usize> {
-    facet: Facet<K>,
-    object: ObjectId,
-    rank: u32,
 }
 
 /// Entries of the lists that grow, so that no more than this much is reserved in vain.
@@ -107,8 +100,8 @@ const BENDERS: usize = 8;
 /// Collects what a world holds.
 #[derive(Debug, Default)]
 pub struct WorldBuilder {
-    triangles: Chunks<Kept<3>>,
-    quads: Chunks<Kept<4>>,
+    triangles: Chunks<Facet<3>>,
+    quads: Chunks<Facet<4>>,
     items: Vec<(Item, Bounds, u32)>,
     points: Vec<[f64; 2]>,
     ranks: Vec<Rank>,
@@ -129,7 +122,7 @@ impl WorldBuilder {
         let item = match shape {
             Shape::Polygon(p) => return self.add_polygon(object, p, rank),
             Shape::Sphere(s) => Item::Sphere(*s, object),
-            Shape::Cone(c) => Item::Cone(Box::new(*c), object),
+            Shape::Cone(c) => Item::Cone(Box::new(Frustum::new(*c)), object),
             Shape::Ring(r) => Item::Ring(*r, object),
             Shape::Source(_) | Shape::Degenerate => return,
         };
@@ -143,14 +136,12 @@ impl WorldBuilder {
         if !(normal.is_finite() && offset.is_finite() && p.vertices.iter().all(|v| v.is_finite())) {
             return;
         }
-        if let Some(facet) = Facet::<3>::new(&p.vertices, normal, offset) {
+        if let Some(facet) = Facet::<3>::new(&p.vertices, normal, offset, object, || self.rank(rank)) {
             self.bend(rank.bends, || facet.bounds());
-            let rank = self.rank(rank);
-            self.triangles.push(Kept { facet, object, rank });
-        } else if let Some(facet) = Facet::<4>::new(&p.vertices, normal, offset) {
+            self.triangles.push(facet);
+        } else if let Some(facet) = Facet::<4>::new(&p.vertices, normal, offset, object, || self.rank(rank)) {
             self.bend(rank.bends, || facet.bounds());
-            let rank = self.rank(rank);
-            self.quads.push(Kept { facet, object, rank });
+            self.quads.push(facet);
         } else {
             let dropped = polygon::dropped_axis(normal);
             let start = self.points.len();
@@ -175,7 +166,7 @@ impl WorldBuilder {
                 self.bend(true, || bounds::around(inner.corners().map(|p| transform.point(p))));
             }
         }
-        let (inner, below) = (world.bounds, world.placements);
+        let (inner, below) = (world.bounds(), world.placements);
         self.place(object, transform, Content::World(world), over, inner, below);
     }
 
@@ -251,8 +242,8 @@ impl WorldBuilder {
             return Err(BuildError::TooManyPlacements);
         }
         let exact = || {
-            let tri = self.triangles.iter().map(|k| k.facet.bounds());
-            let quad = self.quads.iter().map(|k| k.facet.bounds());
+            let tri = self.triangles.iter().map(Facet::bounds);
+            let quad = self.quads.iter().map(Facet::bounds);
             tri.chain(quad).chain(self.items.iter().map(|i| i.1))
         };
         let frame = Frame::around(exact());
@@ -264,18 +255,16 @@ impl WorldBuilder {
 
     fn assemble(self, mut tree: Tree, frame: Frame) -> World {
         let (first, span) = self.objects();
-        let mut rank_of = vec![u32::MAX; span];
         let mut place_of = vec![NOWHERE; span];
-        let mut record = |object: ObjectId, rank: u32, place: u32| {
-            rank_of[(object - first) as usize] = rank;
-            place_of[(object - first) as usize] = place;
-        };
-        let triangles = pack(TRIANGLES, &mut tree.blocks[0], self.triangles, 0, &mut record);
+        let mut record = |object: ObjectId, place: u32| place_of[(object - first) as usize] = place;
+        let gate = Gate::new(frame.bounds, frame.centre);
+        let scale = gate.scale();
+        let triangles = pack(TRIANGLES, &scale, &self.ranks, &mut tree.blocks[0], self.triangles, 0, &mut record);
         let from = tree.counts[0] as u32;
-        let quads = pack(QUADS, &mut tree.blocks[1], self.quads, from, &mut record);
+        let quads = pack(QUADS, &scale, &self.ranks, &mut tree.blocks[1], self.quads, from, &mut record);
         let mut placed = Vec::new();
-        for (i, (item, _, rank)) in self.items.iter().enumerate() {
-            record(item.object(), *rank, node::place(node::leaf(ITEMS, i as u32), 0));
+        for (i, (item, ..)) in self.items.iter().enumerate() {
+            record(item.object(), node::place(ITEMS, i as u32));
             if let Item::Placed(_) = item {
                 placed.push(i as u32);
             }
@@ -287,14 +276,13 @@ impl WorldBuilder {
         World {
             deep: stack_needed(tree.depth) > STACK,
             nodes: tree.nodes,
-            centre: frame.centre,
-            bounds: frame.bounds,
+            gate,
             triangles,
             quads,
+            item_ranks: self.items.iter().map(|i| i.2).collect(),
             items: self.items.into_iter().map(|i| i.0).collect(),
             points,
             first,
-            rank_of,
             place_of,
             ranks: self.ranks,
             placed,
@@ -314,25 +302,25 @@ impl WorldBuilder {
     }
 }
 
-/// Blocks of four from the tree's lists of surfaces, which are numbered from `from`.
+/// Blocks from the tree's lists of surfaces, which are numbered from `from`.
 fn pack<const K: usize>(
     kind: u32,
+    scale: &Scale,
+    ranks: &[Rank],
     lists: &mut Vec<[u32; LANES]>,
-    kept: Chunks<Kept<K>>,
+    kept: Chunks<Facet<K>>,
     from: u32,
-    record: &mut impl FnMut(ObjectId, u32, u32),
-) -> Vec<Facets<K>> {
+    record: &mut impl FnMut(ObjectId, u32),
+) -> Facets<K> {
     let lists = std::mem::take(lists);
+    let mut facets = Facets::with_capacity(lists.len(), kept.len);
     let mut kept = kept.drain();
-    let mut blocks = pages::list(lists.len());
-    for (index, list) in lists.iter().enumerate() {
-        let mut block = Facets::EMPTY;
-        for (lane, &surface) in list.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
-            let k = kept.fetch(surface - from);
-            block.set(lane, &k.facet, k.object, k.rank);
-            record(k.object, k.rank, node::place(node::leaf(kind, index as u32), lane));
+    for list in &lists {
+        let first = facets.list.len();
+        facets.push(scale, ranks, list.iter().filter(|s| **s != u32::MAX).map(|&s| kept.fetch(s - from)));
+        for number in first..facets.list.len() {
+            record(facets.list[number].object, node::place(kind, number as u32));
         }
-        blocks.push(block);
     }
-    blocks
+    facets
 }

@@ -1,6 +1,6 @@
 //! Collapses a binary tree into nodes of eight children, and numbers the leaves in the order of the nodes.
 
-use crate::facet::LANES;
+use crate::block::LANES;
 use crate::node::{self, ITEMS, LEAF, Node, WIDTH};
 use crate::pages;
 use crate::tree::{Child, Part};

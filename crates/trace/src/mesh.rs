@@ -1,18 +1,19 @@
 //! Triangle meshes: shared by every primitive that places them, traced in their own coordinates.
 //!
-//! Triangles are tested by [`crate::trio`], four at a time, without cracks.
+//! Triangles that [`crate::block`] lets through are tested by [`crate::trio`], without cracks.
 
 use crate::BuildError;
+use crate::block::Block;
 use crate::bounds::{self, Box32};
 use crate::frame::Frame;
 use crate::node::{self, Node};
 use crate::pages;
 use crate::ray::{Hit, Rank, Ray};
-use crate::search::{Aim, Found};
+use crate::search::{Aim, End, Found};
 use crate::simd::Vector;
 use crate::tree;
-use crate::trio::{Shear, Trios};
-use crate::walk::{DEEP_STACK, Entry, STACK, stack_needed, walk};
+use crate::trio::{self, Shear, Trio};
+use crate::walk::{DEEP_STACK, Entry, Gate, STACK, stack_needed, walk};
 use ambit_base::{DVec3, EPSILON};
 use ambit_scene::{Bounds, ObjectId};
 
@@ -38,11 +39,11 @@ pub struct MeshGeometry {
 pub struct Mesh {
     pub(crate) nodes: Vec<Node>,
     pub(crate) deep: bool,
-    centre: DVec3,
-    bounds: Bounds,
-    pub(crate) trios: Vec<Trios>,
-    /// Vertex numbers of each triangle, if there are normals or texture coordinates.
-    triangles: Vec<[u32; 3]>,
+    pub(crate) gate: Gate,
+    pub(crate) blocks: Vec<Block>,
+    /// In the order of the blocks.
+    pub(crate) trios: Vec<Trio>,
+    vertices: Vec<DVec3>,
     normals: Vec<DVec3>,
     uvs: Vec<Option<[f64; 2]>>,
     materials: Vec<u32>,
@@ -64,16 +65,29 @@ impl Mesh {
         let frame = Frame::around(exact());
         let boxes: Vec<Box32> = exact().map(|b| frame.child(b)).collect();
         let tree = tree::build(boxes, [geometry.triangles.len(), 0])?;
-        let mut trios = pages::list(tree.blocks[0].len());
-        trios.extend(tree.blocks[0].iter().map(|list| Trios::pack(list, &geometry.triangles, &vertices)));
-        let shaded = geometry.normals.len() + geometry.uvs.len() > 0;
+        let gate = Gate::new(frame.bounds, frame.centre);
+        let scale = gate.scale();
+        let mut blocks = pages::list(tree.blocks[0].len());
+        let mut trios: Vec<Trio> = pages::list(geometry.triangles.len());
+        for list in &tree.blocks[0] {
+            let mut block = Block::new(trios.len() as u32);
+            for &number in list.iter().filter(|t| **t != u32::MAX) {
+                let corners = geometry.triangles[number as usize];
+                let material = geometry.materials.get(number as usize).copied().unwrap_or(0);
+                let blocks = geometry.ranks[material as usize].blocks;
+                block.push(&scale, &of(&corners), 0.0, 0, blocks);
+                trios.push(Trio { corners, number });
+            }
+            blocks.push(block);
+        }
+        let vertices = reorder(&mut geometry, vertices, &mut trios);
         Ok(Self {
             deep: stack_needed(tree.depth) > STACK,
             nodes: tree.nodes,
-            centre: frame.centre,
-            bounds: frame.bounds,
+            gate,
+            blocks,
             trios,
-            triangles: if shaded { geometry.triangles } else { Vec::new() },
+            vertices,
             normals: geometry.normals,
             uvs: geometry.uvs,
             materials: geometry.materials,
@@ -84,7 +98,7 @@ impl Mesh {
 
     /// The box around everything, wider than the triangles by the tolerances of the hit tests.
     pub fn bounds(&self) -> Bounds {
-        self.bounds
+        self.gate.bounds
     }
 
     /// Bytes held.
@@ -94,8 +108,9 @@ impl Mesh {
         }
         size_of::<Self>()
             + held(&self.nodes)
+            + held(&self.blocks)
             + held(&self.trios)
-            + held(&self.triangles)
+            + held(&self.vertices)
             + held(&self.normals)
             + held(&self.uvs)
             + held(&self.materials)
@@ -125,7 +140,6 @@ impl Mesh {
             mesh: self,
             ray: *ray,
             shear: Shear::new(ray.origin, ray.direction),
-            entry: Entry::new(&self.bounds, self.centre, ray),
             bound: aim.bound.min(ray.limit.next_down()),
             found: None,
             aim,
@@ -141,15 +155,19 @@ impl Mesh {
         if s.blocked {
             return Found::Blocked(ObjectId::MAX);
         }
-        s.found.map_or(Found::Nothing, |(block, lane)| self.describe(&self.trios[block], lane, ray, s.bound))
+        s.found.map_or(Found::Nothing, |trio| self.describe(&self.trios[trio as usize], ray, s.bound))
     }
 
-    fn describe(&self, block: &Trios, lane: usize, ray: &Ray, distance: f64) -> Found {
+    #[inline]
+    fn corners(&self, trio: &Trio) -> [DVec3; 3] {
+        trio.corners.map(|i| self.vertices[i as usize])
+    }
+
+    fn describe(&self, trio: &Trio, ray: &Ray, distance: f64) -> Found {
         let d = ray.direction;
-        let triangle = block.triangle[lane];
-        let rank = self.rank(triangle);
-        let normal = block.normal(lane).normalize_or_zero();
-        let weights = block.weights(&Shear::new(ray.origin, d), lane);
+        let rank = self.rank(trio.number);
+        let corners = self.corners(trio);
+        let normal = trio::normal(&corners).normalize_or_zero();
         let mut hit = Hit {
             distance,
             object: ObjectId::MAX,
@@ -161,11 +179,12 @@ impl Mesh {
             tilt: DVec3::ZERO,
             mesh_triangle: true,
         };
-        if let Some(corners) = self.triangles.get(triangle as usize) {
-            if let Some(n) = self.interpolated_normal(corners, weights) {
+        if self.normals.len() + self.uvs.len() > 0 {
+            let weights = Shear::new(ray.origin, d).weights(&corners);
+            if let Some(n) = self.interpolated_normal(&trio.corners, weights) {
                 hit.tilt = n - normal;
             }
-            if let [Some(a), Some(b), Some(c)] = corners.map(|i| self.uvs.get(i as usize).copied().flatten()) {
+            if let [Some(a), Some(b), Some(c)] = trio.corners.map(|i| self.uvs.get(i as usize).copied().flatten()) {
                 hit.uv = [0, 1].map(|k| a[k] * weights[0] + b[k] * weights[1] + c[k] * weights[2]);
             }
         }
@@ -203,27 +222,58 @@ fn check(g: &MeshGeometry) -> Result<(), BuildError> {
     Ok(())
 }
 
+/// Those of a list that `order` names, unless the list is empty.
+fn pick<T: Copy>(from: &mut Vec<T>, order: &[u32]) {
+    if !from.is_empty() {
+        let mut to = pages::list(order.len());
+        to.extend(order.iter().map(|&i| from[i as usize]));
+        *from = to;
+    }
+}
+
+/// Brings vertices, and what goes with them, into the order in which the triangles name them, so that those of a block lie
+/// side by side in memory. Vertices without a triangle are dropped.
+fn reorder(geometry: &mut MeshGeometry, vertices: Vec<DVec3>, trios: &mut [Trio]) -> Vec<DVec3> {
+    let mut place = vec![u32::MAX; vertices.len()];
+    let mut order = Vec::with_capacity(vertices.len());
+    for corner in trios.iter_mut().flat_map(|t| &mut t.corners) {
+        let slot = &mut place[*corner as usize];
+        if *slot == u32::MAX {
+            *slot = order.len() as u32;
+            order.push(*corner);
+        }
+        *corner = *slot;
+    }
+    drop(place);
+    let mut vertices = vertices;
+    pick(&mut vertices, &order);
+    pick(&mut geometry.normals, &order);
+    pick(&mut geometry.uvs, &order);
+    vertices
+}
+
 /// The state of a search through a mesh.
 pub(crate) struct MeshSearch<'m> {
     pub(crate) mesh: &'m Mesh,
     pub(crate) ray: Ray,
     pub(crate) shear: Shear,
-    pub(crate) entry: Option<Entry>,
     /// Distance of the nearest triangle so far, or what limits it.
     pub(crate) bound: f64,
-    found: Option<(usize, usize)>,
+    found: Option<u32>,
     aim: Aim,
     blocked: bool,
 }
 
 impl MeshSearch<'_> {
     fn scalar<const N: usize>(&mut self) {
-        let Some(entry) = self.entry else { return };
+        let Some(entry) = Entry::new(&self.mesh.gate, &self.ray) else { return };
         let m = self.mesh;
         walk::<N>(&m.nodes, &entry, self.bound, |word| {
             let index = node::index(word);
-            let mask = m.trios[index].test(&self.shear);
-            self.take(index, mask);
+            let block = &m.blocks[index];
+            for trio in block.first..block.first + block.used().count_ones() {
+                self.test(trio);
+            }
             self.reach(&entry)
         });
     }
@@ -232,38 +282,45 @@ impl MeshSearch<'_> {
         if self.blocked { -1.0 } else { entry.reach(self.bound) }
     }
 
-    /// Looks closer at the lanes of a block that the line may pass through.
+    /// What ends the search.
     #[inline]
-    pub(crate) fn take(&mut self, index: usize, mask: u32) {
-        let mut mask = mask & u32::from(self.mesh.trios[index].used());
-        while mask != 0 {
-            let lane = mask.trailing_zeros() as usize & 3;
-            mask &= mask - 1;
-            if self.mesh.trios[index].passes(&self.shear, lane) {
-                self.consider(index, lane);
-            }
-        }
+    pub(crate) fn end(&self) -> End {
+        self.aim.end(&self.ray)
     }
 
-    fn consider(&mut self, index: usize, lane: usize) {
-        let block = &self.mesh.trios[index];
-        let n = block.normal(lane);
-        let t = n.dot(block.corner(0, lane) - self.ray.origin) / n.dot(self.ray.direction);
+    /// Ends the search at a triangle that stops shadow rays.
+    #[inline]
+    pub(crate) fn block(&mut self) {
+        self.blocked = true;
+    }
+
+    /// Tests a triangle. True if it is hit and kept.
+    #[inline(always)]
+    pub(crate) fn test(&mut self, trio: u32) -> bool {
+        let corners = self.mesh.corners(&self.mesh.trios[trio as usize]);
+        self.shear.passes(&corners) && self.consider(trio, &corners)
+    }
+
+    #[inline]
+    fn consider(&mut self, trio: u32, corners: &[DVec3; 3]) -> bool {
+        let n = trio::normal(corners);
+        let t = n.dot(corners[0] - self.ray.origin) / n.dot(self.ray.direction);
         if !(t > EPSILON && t <= self.bound && t.is_finite()) {
-            return;
+            return false;
         }
         // Of triangles at the very same distance the one with the highest number is kept, whatever the order.
-        let number = block.triangle[lane];
-        if let Some((b, l)) = self.found
+        let number = self.mesh.trios[trio as usize].number;
+        if let Some(other) = self.found
             && t == self.bound
-            && self.mesh.trios[b].triangle[l] > number
+            && self.mesh.trios[other as usize].number > number
         {
-            return;
+            return false;
         }
         self.bound = t;
-        self.found = Some((index, lane));
+        self.found = Some(trio);
         if t < self.aim.blocked_before && self.aim.all_block.unwrap_or_else(|| self.mesh.rank(number).blocks) {
             self.blocked = true;
         }
+        true
     }
 }

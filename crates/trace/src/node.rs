@@ -64,15 +64,17 @@ pub(crate) fn index(leaf: u32) -> usize {
 /// No surface.
 pub(crate) const NOWHERE: u32 = u32::MAX;
 
-/// Names one surface: its leaf and lane in 31 bits.
+/// Bits of a surface's number among those of its kind.
+const NUMBER_BITS: u32 = 29;
+
+/// Names one surface: its kind and number.
 #[inline]
-pub(crate) fn place(leaf: u32, lane: usize) -> u32 {
-    (leaf & !LEAF) << 2 | lane as u32
+pub(crate) fn place(kind: u32, number: u32) -> u32 {
+    kind << NUMBER_BITS | number
 }
 
-/// Kind, index and lane of a surface's place.
+/// Kind and number of a surface.
 #[inline]
-pub(crate) fn split(place: u32) -> (u32, usize, usize) {
-    let leaf = place >> 2;
-    (kind(leaf), index(leaf), (place & 3) as usize)
+pub(crate) fn split(place: u32) -> (u32, usize) {
+    (place >> NUMBER_BITS, (place & ((1 << NUMBER_BITS) - 1)) as usize)
 }

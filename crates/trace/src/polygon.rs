@@ -58,6 +58,28 @@ pub(crate) fn reach(vertices: &[[f64; 2]]) -> f64 {
     most
 }
 
+/// How negative the product of an edge of a convex outline, counter-clockwise, and the way to a point can be where the point still
+/// counts as inside. [`inside`] takes what is beyond an edge by ε over its length, or by ε along an axis; such a point is
+/// a point of that edge, moved, and so is off any other edge by no more than the product of that and the movement.
+pub(crate) fn tolerance(vertices: &[[f64; 2]]) -> f64 {
+    let edge = |i: usize| {
+        let (a, b) = (vertices[i], vertices[(i + 1) % vertices.len()]);
+        [b[0] - a[0], b[1] - a[1]]
+    };
+    let mut most = 0.0f64;
+    for i in 0..vertices.len() {
+        let e = edge(i);
+        let length2 = e[0] * e[0] + e[1] * e[1];
+        for j in 0..vertices.len() {
+            let f = edge(j);
+            // A movement of ε/|e| at right angles to e, or of ε along an axis.
+            let across = (e[0] * f[0] + e[1] * f[1]).abs() / length2;
+            most = most.max(across).max(f[0].abs()).max(f[1].abs());
+        }
+    }
+    1.01 * EPSILON * most
+}
+
 /// The box around all points of the plane that count as inside the outline. The tolerances along the axes that remain
 /// are left to [`crate::frame`]; on the dropped axis, heights change by up to √2 of the reach.
 pub(crate) fn bounds(n: DVec3, offset: f64, dropped: usize, vertices: &[[f64; 2]]) -> Bounds {
@@ -103,12 +125,12 @@ pub(crate) fn inside(x: f64, y: f64, vertices: impl Iterator<Item = [f64; 2]> + 
     odd
 }
 
-/// Distance along the ray at which the plane is met, and the cosine −d·n; none if nearly parallel or not in front.
+/// Distance along the ray at which the plane is met; none if nearly parallel or not in front.
 #[inline]
-pub(crate) fn plane(n: DVec3, offset: f64, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
+pub(crate) fn plane(n: DVec3, offset: f64, origin: DVec3, direction: DVec3) -> Option<f64> {
     let dn = direction.dot(n);
     let t = (offset - n.dot(origin)) / dn;
-    (dn.abs() > EPSILON && t > EPSILON).then_some((t, -dn))
+    (dn.abs() > EPSILON && t > EPSILON).then_some(t)
 }
 
 /// A polygon that is neither a triangle nor a convex quadrilateral.
@@ -124,15 +146,15 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    /// The nearest hit no farther than `bound`: distance and cosine.
-    pub(crate) fn hit(&self, points: &[[f64; 2]], origin: DVec3, direction: DVec3, bound: f64) -> Option<(f64, f64)> {
-        let (t, cosine) = plane(self.normal, self.offset, origin, direction)?;
+    /// Distance of the hit if no farther than `bound`.
+    pub(crate) fn hit(&self, points: &[[f64; 2]], origin: DVec3, direction: DVec3, bound: f64) -> Option<f64> {
+        let t = plane(self.normal, self.offset, origin, direction)?;
         if t > bound {
             return None;
         }
         let [x, y] = project(origin + direction * t, self.dropped as usize);
         let vertices = &points[self.start as usize..][..self.len as usize];
-        inside(x, y, vertices.iter().copied()).then_some((t, cosine))
+        inside(x, y, vertices.iter().copied()).then_some(t)
     }
 }
 

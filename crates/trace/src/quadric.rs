@@ -13,8 +13,32 @@ use crate::polygon;
 /// Discriminants this close to zero are double roots, below they are none.
 const TOUCHING: f64 = 1e-12;
 
-/// A surface hit: distance, unit normal, cosine.
-pub(crate) type Found = (f64, DVec3, f64);
+/// A surface hit: distance, and a vector along the outward normal of any length: it takes a root and a division to
+/// make a normal of it, which only the nearest hit needs ([`normal`]).
+pub(crate) type Found = (f64, DVec3);
+
+/// A cone, and what is needed of it for every ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frustum {
+    cone: Cone,
+    /// Change of the radius along the axis.
+    slope: f64,
+}
+
+impl Frustum {
+    pub(crate) fn new(cone: Cone) -> Self {
+        Self { cone, slope: (cone.r1 - cone.r0) / cone.length }
+    }
+
+    pub(crate) fn inward(&self) -> bool {
+        self.cone.inward
+    }
+}
+
+/// The unit normal of the front.
+pub(crate) fn normal(out: DVec3, inward: bool) -> DVec3 {
+    unit(if inward { -out } else { out })
+}
 
 /// Leading coefficients up to this are rounding errors: the line is parallel to the surface.
 const PARALLEL: f64 = 1e-14;
@@ -48,19 +72,17 @@ pub(crate) fn sphere(s: &Sphere, origin: DVec3, direction: DVec3, bound: f64) ->
             if t > bound {
                 return None;
             }
-            let out = (nearest + direction * root) / s.radius;
-            let normal = unit(if s.inward { -out } else { out });
-            return Some((t, normal, -direction.dot(normal)));
+            return Some((t, nearest + direction * root));
         }
     }
     None
 }
 
 /// Roots in ascending order, each above ε, within the bound and with an axial position inside the closed segment.
-pub(crate) fn cone(c: &Cone, origin: DVec3, direction: DVec3, bound: f64) -> Option<Found> {
+pub(crate) fn cone(f: &Frustum, origin: DVec3, direction: DVec3, bound: f64) -> Option<Found> {
+    let Frustum { cone: c, slope } = f;
     let shift = (c.p0 - origin).dot(direction);
     let start = origin + direction * shift - c.p0;
-    let slope = (c.r1 - c.r0) / c.length;
     // Radial parts of start and direction, and the cone's radius along the ray, r(t) = r + t·dr.
     let (z, dz) = (start.dot(c.axis), direction.dot(c.axis));
     let (w, dw) = (start - c.axis * z, direction - c.axis * dz);
@@ -77,23 +99,23 @@ pub(crate) fn cone(c: &Cone, origin: DVec3, direction: DVec3, bound: f64) -> Opt
         }
         // The gradient of |w|² − r²: outward, tilted against the axis by the slope.
         let out = w + dw * root - c.axis * (slope * (r + root * dr));
-        let normal = unit(if c.inward { -out } else { out });
-        if normal == DVec3::ZERO {
+        let length2 = out.length_squared();
+        if !(length2 > 0.0 && length2.is_finite()) {
             continue; // the apex
         }
-        return Some((t, normal, -direction.dot(normal)));
+        return Some((t, out));
     }
     None
 }
 
 /// Radii inclusive.
 pub(crate) fn ring(r: &Ring, origin: DVec3, direction: DVec3, bound: f64) -> Option<Found> {
-    let (t, cosine) = polygon::plane(r.normal, r.normal.dot(r.centre), origin, direction)?;
+    let t = polygon::plane(r.normal, r.normal.dot(r.centre), origin, direction)?;
     if t > bound {
         return None;
     }
     let d2 = (origin + direction * t - r.centre).length_squared();
-    (d2 >= r.r0 * r.r0 && d2 <= r.r1 * r.r1).then_some((t, r.normal, cosine))
+    (d2 >= r.r0 * r.r0 && d2 <= r.r1 * r.r1).then_some((t, r.normal))
 }
 
 fn unit(v: DVec3) -> DVec3 {
@@ -109,12 +131,10 @@ mod tests {
     #[test]
     fn spheres_are_hit_from_outside_and_inside() {
         let s = Sphere { centre: DVec3::new(1.0, 2.0, 3.0), radius: 2.0, inward: false };
-        let (t, n, c) = sphere(&s, DVec3::new(1.0, 2.0, 10.0), DVec3::NEG_Z, FAR_AWAY).unwrap();
-        assert_eq!((t, n, c), (5.0, DVec3::Z, 1.0));
-        let (t, n, c) = sphere(&s, s.centre, DVec3::X, FAR_AWAY).unwrap();
-        assert_eq!((t, n, c), (2.0, DVec3::X, -1.0));
-        let bubble = Sphere { inward: true, ..s };
-        assert_eq!(sphere(&bubble, s.centre, DVec3::X, FAR_AWAY).unwrap().2, 1.0);
+        let (t, out) = sphere(&s, DVec3::new(1.0, 2.0, 10.0), DVec3::NEG_Z, FAR_AWAY).unwrap();
+        assert_eq!((t, normal(out, false)), (5.0, DVec3::Z));
+        let (t, out) = sphere(&s, s.centre, DVec3::X, FAR_AWAY).unwrap();
+        assert_eq!((t, normal(out, false), normal(out, true)), (2.0, DVec3::X, DVec3::NEG_X));
         // From the surface outward: the root at 0 is refused and there is no other.
         assert!(sphere(&s, DVec3::new(3.0, 2.0, 3.0), DVec3::X, FAR_AWAY).is_none());
         assert!(sphere(&s, DVec3::new(3.0, 2.0, 3.0), DVec3::NEG_X, FAR_AWAY).is_some());
@@ -124,13 +144,13 @@ mod tests {
     fn a_distant_origin_keeps_its_digits() {
         let s = Sphere { centre: DVec3::ZERO, radius: 1e-3, inward: false };
         let d = DVec3::new(3.0, -2.0, 1.0).normalize();
-        let (t, _, _) = sphere(&s, d * -1e6, d, FAR_AWAY).unwrap();
+        let (t, _) = sphere(&s, d * -1e6, d, FAR_AWAY).unwrap();
         assert!((t - (1e6 - 1e-3)).abs() < 1e-9);
     }
 
     #[test]
     fn cones_are_open_at_their_ends_and_straight_between() {
-        let c = Cone {
+        let c = Frustum::new(Cone {
             p0: DVec3::ZERO,
             p1: DVec3::new(0.0, 0.0, 2.0),
             r0: 1.0,
@@ -138,14 +158,14 @@ mod tests {
             axis: DVec3::Z,
             length: 2.0,
             inward: false,
-        };
-        let (t, n, cosine) = cone(&c, DVec3::new(5.0, 0.0, 1.0), DVec3::NEG_X, FAR_AWAY).unwrap();
+        });
+        let (t, out) = cone(&c, DVec3::new(5.0, 0.0, 1.0), DVec3::NEG_X, FAR_AWAY).unwrap();
         assert!((t - 3.5).abs() < 1e-12);
         let expected = DVec3::new(2.0, 0.0, -1.0).normalize();
-        assert!((n - expected).length() < 1e-12 && (cosine - expected.x).abs() < 1e-12);
+        assert!((normal(out, false) - expected).length() < 1e-12);
         // Down through the open end on to the flank from inside.
-        let (t, n, cosine) = cone(&c, DVec3::new(1.5, 0.0, 5.0), DVec3::NEG_Z, FAR_AWAY).unwrap();
-        assert!((t - 4.0).abs() < 1e-12 && (n - expected).length() < 1e-12 && cosine < 0.0);
+        let (t, out) = cone(&c, DVec3::new(1.5, 0.0, 5.0), DVec3::NEG_Z, FAR_AWAY).unwrap();
+        assert!((t - 4.0).abs() < 1e-12 && (normal(out, false) - expected).length() < 1e-12);
         assert!(cone(&c, DVec3::new(0.5, 0.0, 5.0), DVec3::NEG_Z, FAR_AWAY).is_none());
     }
 

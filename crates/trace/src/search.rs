@@ -1,7 +1,7 @@
 //! One search through a world: leaf by leaf, keeping the best hit, ending early at a surface that stops shadow rays.
 
-use crate::best::{Best, Candidate, Inner, Winner};
-use crate::facet::{Facets, Lanes};
+use crate::best::{Best, Candidate, Inner, Standing, Winner};
+use crate::block::Block;
 use crate::item::{Content, Item, Placed};
 use crate::node::{self, ITEMS, QUADS, TRIANGLES};
 use crate::ray::{Hit, Rank, Ray};
@@ -21,6 +21,27 @@ pub(crate) struct Aim {
     pub(crate) all_block: Option<bool>,
 }
 
+/// Surfaces that end a search.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct End {
+    /// Those nearer than this that stop shadow rays; −∞ if none does.
+    pub(crate) before: f64,
+    /// All count as such.
+    pub(crate) all: bool,
+}
+
+impl Aim {
+    #[inline]
+    fn before(&self, ray: &Ray) -> f64 {
+        if self.all_block == Some(false) { f64::NEG_INFINITY } else { self.blocked_before.min(ray.limit) }
+    }
+
+    #[inline]
+    pub(crate) fn end(&self, ray: &Ray) -> End {
+        End { before: self.before(ray), all: self.all_block == Some(true) }
+    }
+}
+
 /// What a search found.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Found {
@@ -32,8 +53,7 @@ pub(crate) enum Found {
 /// The state of a search.
 pub(crate) struct Search<'w> {
     pub(crate) world: &'w World,
-    pub(crate) ray: Ray,
-    pub(crate) entry: Option<Entry>,
+    pub(crate) ray: &'w Ray,
     pub(crate) best: Best,
     aim: Aim,
     blocked: Option<ObjectId>,
@@ -41,19 +61,12 @@ pub(crate) struct Search<'w> {
 
 impl<'w> Search<'w> {
     #[inline]
-    pub(crate) fn new(world: &'w World, ray: &Ray, aim: Aim) -> Self {
-        Self {
-            world,
-            ray: *ray,
-            entry: Entry::new(&world.bounds, world.centre, ray),
-            best: Best::new(ray.limit, aim.bound),
-            aim,
-            blocked: None,
-        }
+    pub(crate) fn new(world: &'w World, ray: &'w Ray, aim: Aim) -> Self {
+        Self { world, ray, best: Best::new(ray.limit, aim.bound), aim, blocked: None }
     }
 
     /// Walks the tree.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn run(&mut self) -> Found {
         if let Some(vector) = self.world.vector {
             vector.search(self);
@@ -66,15 +79,14 @@ impl<'w> Search<'w> {
     }
 
     fn scalar<const N: usize>(&mut self) {
-        let Some(entry) = self.entry else { return };
+        let Some(entry) = Entry::new(&self.world.gate, self.ray) else { return };
         let w = self.world;
-        let (o, d) = (self.ray.origin, self.ray.direction);
         walk::<N>(&w.nodes, &entry, self.best.bound(), |word| {
             let index = node::index(word);
             match node::kind(word) {
-                TRIANGLES => self.take(word, &w.triangles[index], w.triangles[index].test(o, d, self.best.bound())),
-                QUADS => self.take(word, &w.quads[index], w.quads[index].test(o, d, self.best.bound())),
-                _ => self.item(word, index),
+                TRIANGLES => self.all(TRIANGLES, &w.triangles.blocks[index]),
+                QUADS => self.all(QUADS, &w.quads.blocks[index]),
+                _ => self.item(index, f64::INFINITY),
             }
             self.reach(&entry)
         });
@@ -86,50 +98,64 @@ impl<'w> Search<'w> {
         if self.blocked.is_some() { -1.0 } else { entry.reach(self.best.bound()) }
     }
 
-    /// Takes what a block answered.
+    /// What ends the search.
     #[inline]
-    pub(crate) fn take<const K: usize>(&mut self, word: u32, block: &Facets<K>, lanes: Lanes) {
-        let mut mask = lanes.mask;
-        while mask != 0 {
-            let lane = mask.trailing_zeros() as usize & 3;
-            mask &= mask - 1;
-            let distance = lanes.distance[lane];
-            if distance > self.best.bound() {
-                continue;
-            }
-            let inside = lanes.edge[lane] > 0.0 || block.decide(lane, self.ray.origin, self.ray.direction, distance);
-            if inside {
-                let front = block.normal(lane).dot(self.ray.direction) < 0.0;
-                let place = node::place(word, lane);
-                self.offer(Candidate { distance, object: block.object[lane], place, front });
-            }
+    pub(crate) fn end(&self) -> End {
+        self.aim.end(self.ray)
+    }
+
+    /// Ends the search at an object that stops shadow rays.
+    #[inline]
+    pub(crate) fn block(&mut self, object: ObjectId) {
+        self.blocked = Some(object);
+    }
+
+    /// Tests all facets of a block.
+    fn all(&mut self, kind: u32, block: &Block) {
+        for number in block.first..block.first + block.used().count_ones() {
+            self.test(node::place(kind, number));
         }
     }
 
-    /// Tests a surface that has a leaf of its own.
-    pub(crate) fn item(&mut self, word: u32, index: usize) {
+    /// Tests a facet. True if it is hit.
+    #[inline(always)]
+    pub(crate) fn test(&mut self, place: u32) -> bool {
+        let (o, d, bound) = (self.ray.origin, self.ray.direction, self.best.bound());
+        let (kind, number) = node::split(place);
+        let distance = match kind {
+            TRIANGLES => self.world.triangles.list[number].hit(o, d, bound),
+            _ => self.world.quads.list[number].hit(o, d, bound),
+        };
+        if let Some(distance) = distance {
+            self.offer(Candidate { distance, place });
+        }
+        distance.is_some()
+    }
+
+    /// Tests a surface that has a leaf of its own; what is farther than `bound` does not matter.
+    pub(crate) fn item(&mut self, index: usize, bound: f64) {
         let item = &self.world.items[index];
+        let bound = self.best.bound().min(bound);
         if let Item::Placed(p) = item {
-            return self.placed(p);
+            return self.placed(p, bound);
         }
         let (o, d) = (self.ray.origin, self.ray.direction);
-        if let Some((distance, _, cosine)) = item.hit(&self.world.points, o, d, self.best.bound()) {
-            let place = node::place(word, 0);
-            self.offer(Candidate { distance, object: item.object(), place, front: cosine > 0.0 });
+        if let Some(distance) = item.hit(&self.world.points, o, d, bound) {
+            self.offer(Candidate { distance, place: node::place(ITEMS, index as u32) });
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn offer(&mut self, c: Candidate) {
-        let world = self.world;
-        if c.distance < self.aim.blocked_before && self.aim.all_block.unwrap_or_else(|| world.rank_at(&c).blocks) {
-            self.blocked = Some(c.object);
+        let (world, ray) = (self.world, self.ray);
+        if c.distance < self.aim.blocked_before && self.aim.all_block.unwrap_or_else(|| world.rank(c.place).blocks) {
+            self.blocked = Some(world.object(c.place));
         }
-        self.best.offer(c, |c| world.rank_at(c));
+        self.best.offer(c, |c| standing(world, ray, c));
     }
 
     /// Traces through what an instance or mesh places, in its own coordinates and units.
-    fn placed(&mut self, p: &Placed) {
+    fn placed(&mut self, p: &Placed, bound: f64) {
         let scale = p.transform.scale().abs();
         let d = self.ray.direction;
         let ray = Ray {
@@ -138,7 +164,7 @@ impl<'w> Search<'w> {
             limit: self.ray.limit / scale,
         };
         let aim = Aim {
-            bound: (self.best.bound() / scale).next_up(),
+            bound: (bound / scale).next_up(),
             blocked_before: self.aim.blocked_before / scale,
             all_block: self.aim.all_block.or(p.over.map(|r| r.blocks)),
         };
@@ -174,25 +200,24 @@ impl<'w> Search<'w> {
     }
 
     /// Judges ties and describes the winner.
-    #[inline]
+    #[inline(always)]
     fn finish(&mut self) -> Found {
         if let Some(object) = self.blocked {
             return Found::Blocked(object);
         }
-        let world = self.world;
-        let rank = |c: &Candidate| world.rank_at(c);
-        match self.best.winner(rank) {
+        let (world, ray) = (self.world, self.ray);
+        match self.best.winner(|c| standing(world, ray, c)) {
             None => Found::Nothing,
             Some(Winner::Inner(inner)) => Found::Hit(inner.hit, inner.rank),
             Some(Winner::Surface(c)) => {
-                let rank = rank(&c);
-                let normal = self.normal(&c);
+                let rank = world.rank(c.place);
+                let normal = world.normal(c.place, ray);
                 let hit = Hit {
                     distance: c.distance,
-                    object: c.object,
+                    object: world.object(c.place),
                     modifier: rank.modifier,
                     normal,
-                    cosine: -self.ray.direction.dot(normal),
+                    cosine: -ray.direction.dot(normal),
                     placement: None,
                     uv: [0.0; 2],
                     tilt: DVec3::ZERO,
@@ -202,18 +227,9 @@ impl<'w> Search<'w> {
             }
         }
     }
+}
 
-    fn normal(&self, c: &Candidate) -> DVec3 {
-        let (kind, index, lane) = node::split(c.place);
-        match kind {
-            TRIANGLES => self.world.triangles[index].normal(lane),
-            QUADS => self.world.quads[index].normal(lane),
-            ITEMS => {
-                let (o, d) = (self.ray.origin, self.ray.direction);
-                let found = self.world.items[index].hit(&self.world.points, o, d, f64::INFINITY);
-                found.map_or(DVec3::ZERO, |f| f.1)
-            }
-            _ => DVec3::ZERO,
-        }
-    }
+fn standing(world: &World, ray: &Ray, c: &Candidate) -> Standing {
+    let front = world.normal(c.place, ray).dot(ray.direction) < 0.0;
+    Standing { object: world.object(c.place), rank: world.rank(c.place), front }
 }

@@ -1,7 +1,7 @@
 //! The vector versions of the walk and of the leaf tests, for processors with AVX2 and FMA; chosen at run time.
 //!
-//! The leaf tests do the same operations in the same order as their scalar twins, without fused multiplication, so
-//! their results are the same bits. The walk may differ in rounding, which only changes what is culled, never a hit.
+//! What is computed here, in f32, only decides which surfaces need not be tested; those tests are the same code for
+//! all processors. So rounding may differ from the scalar walk, hits are the same bits.
 #![allow(unsafe_code)]
 
 /// Proof that the processor has what this module needs.
@@ -26,20 +26,23 @@ mod absent {
 }
 
 #[cfg(target_arch = "x86_64")]
+mod coarse;
+
+#[cfg(target_arch = "x86_64")]
 mod present {
     use super::Vector;
-    use crate::facet::{Facets, LANES, Lanes};
+    use super::coarse::{Line, Waiting, coarse};
+    use crate::block::LANES;
+    use crate::collapse::SLACK;
     use crate::mesh::MeshSearch;
     use crate::node::{self, LEAF, Node, QUADS, TRIANGLES};
-    use crate::search::Search;
-    use crate::trio::{Shear, Trios, UNSURE};
-    use crate::walk::{DEEP_STACK, Entry, STACK};
+    use crate::ray::Ray;
+    use crate::search::{End, Search};
+    use crate::walk::{DEEP_STACK, Entry, GRAZING, Gate, LEAST_DIRECTION, ROUNDING, STACK, Start};
     use ambit_base::{DVec3, EPSILON};
     #[allow(clippy::wildcard_imports)]
     use std::arch::x86_64::*;
     use std::mem::MaybeUninit;
-
-    type Four = __m256d;
 
     impl Vector {
         pub(crate) fn detect() -> Option<Self> {
@@ -65,66 +68,155 @@ mod present {
 
     #[target_feature(enable = "avx2,fma")]
     fn world<const N: usize>(s: &mut Search<'_>) {
-        let Some(entry) = s.entry else { return };
         let w = s.world;
-        let (o, d) = (s.ray.origin, s.ray.direction);
-        let (of, df) = (splat(o), splat(d));
+        let entered = enter(&w.gate, s.ray, s.end());
+        let Some((entry, line)) = &entered else { return };
         let fetch = |word: u32| {
             if word & LEAF == 0 {
                 prefetch::<4, _>(&w.nodes, word as usize);
             } else if node::kind(word) == TRIANGLES {
-                prefetch::<6, _>(&w.triangles, node::index(word));
+                prefetch::<6, _>(&w.triangles.blocks, node::index(word));
             } else if node::kind(word) == QUADS {
-                prefetch::<7, _>(&w.quads, node::index(word));
+                prefetch::<6, _>(&w.quads.blocks, node::index(word));
+                prefetch::<1, _>(&w.quads.slopes, node::index(word));
             }
         };
-        walk::<N>(&w.nodes, &entry, s.best.bound(), fetch, |word| {
+        let mut waiting = Waiting::new();
+        let bound = s.best.bound();
+        let reach = walk::<N>(&w.nodes, entry, bound, fetch, |word, reach| {
             let index = node::index(word);
-            match node::kind(word) {
+            let found = match node::kind(word) {
                 TRIANGLES => {
-                    let block = &w.triangles[index];
-                    if let Some(lanes) = facets(block, of, df, s.best.bound()) {
-                        s.take(word, block, lanes);
-                        return Some(s.reach(&entry));
+                    let block = &w.triangles.blocks[index];
+                    let found = coarse(block, None, line, reach)?;
+                    if let Some(lane) = found.blocked {
+                        s.block(block.object[lane]);
+                        return Some(-1.0);
                     }
-                    None
+                    waiting.push(&found, |lane| {
+                        let number = block.first + lane;
+                        prefetch::<2, _>(&w.triangles.list, number as usize);
+                        node::place(TRIANGLES, number)
+                    });
+                    found
                 }
                 QUADS => {
-                    let block = &w.quads[index];
-                    if let Some(lanes) = facets(block, of, df, s.best.bound()) {
-                        s.take(word, block, lanes);
-                        return Some(s.reach(&entry));
+                    let block = &w.quads.blocks[index];
+                    let found = coarse(block, Some(&w.quads.slopes[index]), line, reach)?;
+                    if let Some(lane) = found.blocked {
+                        s.block(block.object[lane]);
+                        return Some(-1.0);
                     }
-                    None
+                    waiting.push(&found, |lane| {
+                        let number = block.first + lane;
+                        prefetch::<2, _>(&w.quads.list, number as usize);
+                        node::place(QUADS, number)
+                    });
+                    found
                 }
                 _ => {
-                    s.item(word, index);
-                    Some(s.reach(&entry))
+                    s.item(index, entry.distance(reach));
+                    return Some(reach.min(s.reach(entry)));
                 }
+            };
+            let mut reach = reach.min(found.reach);
+            if waiting.is_full() || found.unsure {
+                reach = waiting.settle(reach, |place| s.test(place).then(|| s.reach(entry)));
             }
+            Some(reach)
         });
+        waiting.settle(reach, |place| s.test(place).then(|| s.reach(entry)));
     }
 
     #[target_feature(enable = "avx2,fma")]
     fn mesh<const N: usize>(s: &mut MeshSearch<'_>) {
-        let Some(entry) = s.entry else { return };
         let m = s.mesh;
+        let entered = enter(&m.gate, &s.ray, s.end());
+        let Some((entry, line)) = &entered else { return };
         let fetch = |word: u32| {
             if word & LEAF == 0 {
                 prefetch::<4, _>(&m.nodes, word as usize);
             } else {
-                prefetch::<5, _>(&m.trios, node::index(word));
+                prefetch::<6, _>(&m.blocks, node::index(word));
             }
         };
-        walk::<N>(&m.nodes, &entry, s.bound, fetch, |word| {
-            let index = node::index(word);
-            let mask = trios(&m.trios[index], &s.shear);
-            if mask == 0 {
-                return None;
+        let mut waiting = Waiting::new();
+        let bound = s.bound;
+        let reach = walk::<N>(&m.nodes, entry, bound, fetch, |word, reach| {
+            let block = &m.blocks[node::index(word)];
+            let found = coarse(block, None, line, reach)?;
+            if found.blocked.is_some() {
+                s.block();
+                return Some(-1.0);
             }
-            s.take(index, mask);
-            Some(s.reach(&entry))
+            waiting.push(&found, |lane| {
+                prefetch::<1, _>(&m.trios, (block.first + lane) as usize);
+                block.first + lane
+            });
+            let mut reach = reach.min(found.reach);
+            if waiting.is_full() || found.unsure {
+                reach = waiting.settle(reach, |trio| s.test(trio).then(|| s.reach(entry)));
+            }
+            Some(reach)
         });
+        waiting.settle(reach, |trio| s.test(trio).then(|| s.reach(entry)));
+    }
+
+    /// The vector twin of [`Entry::new`].
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    pub(super) fn enter(gate: &Gate, ray: &Ray, end: End) -> Option<(Entry, Line)> {
+        let four = |v: DVec3| _mm256_set_pd(0.0, v.z, v.y, v.x);
+        let (o, d) = (four(ray.origin), four(ray.direction));
+        let above = _mm256_cmp_pd::<_CMP_GE_OQ>(o, four(gate.bounds.min));
+        let below = _mm256_cmp_pd::<_CMP_LE_OQ>(o, four(gate.bounds.max));
+        let inside = _mm256_movemask_pd(_mm256_and_pd(above, below)) == 0xf;
+        let start = if inside && (ray.direction.x + ray.direction.y + ray.direction.z).is_finite() {
+            Start { distance: 0.0, extent: gate.extent }
+        } else {
+            Start::new(gate, ray)?
+        };
+        let moved = _mm256_add_pd(o, _mm256_mul_pd(d, _mm256_set1_pd(start.distance)));
+        let o = _mm256_cvtpd_ps(_mm256_sub_pd(moved, four(gate.centre)));
+        let d = _mm256_cvtpd_ps(d);
+        let sign = _mm_set1_ps(-0.0);
+        let size = _mm_max_ps(_mm_andnot_ps(sign, d), _mm_set1_ps(LEAST_DIRECTION));
+        let r = _mm_div_ps(_mm_set1_ps(1.0), _mm_or_ps(size, _mm_and_ps(sign, d)));
+        let noise = _mm_set1_ps((start.extent * ROUNDING) as f32);
+        let shift = _mm_add_ps(_mm_mul_ps(_mm_set1_ps(SLACK), _mm_andnot_ps(sign, o)), noise);
+        let shift = _mm_or_ps(shift, _mm_and_ps(sign, r));
+        let store = |v| {
+            let mut a = [0.0f32; 4];
+            // SAFETY: the array has room for one unaligned vector.
+            unsafe { _mm_storeu_ps(a.as_mut_ptr(), v) };
+            a
+        };
+        let negative = _mm_movemask_ps(r) as usize;
+        let splat = |v| {
+            [
+                _mm256_broadcastss_ps(v),
+                _mm256_broadcastss_ps(_mm_movehdup_ps(v)),
+                _mm256_broadcastss_ps(_mm_movehl_ps(v, v)),
+            ]
+        };
+        let line = Line {
+            origin: splat(o),
+            direction: splat(d),
+            widening: (start.extent / gate.extent) as f32,
+            beyond: (2.0 * EPSILON + GRAZING * start.extent) as f32,
+            // Rounded down, with room for the division.
+            end: (end.before - start.distance) as f32 * (1.0 - 8.0 * f32::EPSILON),
+            all: if end.all { (1 << LANES) - 1 } else { 0 },
+        };
+        let entry = Entry {
+            start: start.distance,
+            extent: start.extent,
+            inverse: store(r),
+            near: store(_mm_xor_ps(sign, _mm_mul_ps(_mm_add_ps(o, shift), r))),
+            far: store(_mm_xor_ps(sign, _mm_mul_ps(_mm_sub_ps(o, shift), r))),
+            array: [negative & 1, 2 + (negative >> 1 & 1), 4 + (negative >> 2 & 1)],
+        };
+        Some((entry, line))
     }
 
     /// Asks for the first `LINES` cache lines of an element.
@@ -137,113 +229,6 @@ mod present {
         }
     }
 
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn splat(v: DVec3) -> [Four; 3] {
-        [_mm256_set1_pd(v.x), _mm256_set1_pd(v.y), _mm256_set1_pd(v.z)]
-    }
-
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn load(a: &[f64; LANES]) -> Four {
-        // SAFETY: the array has room for one unaligned vector.
-        unsafe { _mm256_loadu_pd(a.as_ptr()) }
-    }
-
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn store(v: Four) -> [f64; LANES] {
-        let mut a = [0.0; LANES];
-        // SAFETY: the array has room for one unaligned vector.
-        unsafe { _mm256_storeu_pd(a.as_mut_ptr(), v) };
-        a
-    }
-
-    /// `a·b`, summed from the left.
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn dot(a: [Four; 3], b: [Four; 3]) -> Four {
-        _mm256_add_pd(_mm256_add_pd(_mm256_mul_pd(a[0], b[0]), _mm256_mul_pd(a[1], b[1])), _mm256_mul_pd(a[2], b[2]))
-    }
-
-    /// `a·b − c·d`
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn minor(a: Four, b: Four, c: Four, d: Four) -> Four {
-        _mm256_sub_pd(_mm256_mul_pd(a, b), _mm256_mul_pd(c, d))
-    }
-
-    /// The vector twin of [`Facets::test`]; None if no lane is hit.
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn facets<const K: usize>(b: &Facets<K>, o: [Four; 3], d: [Four; 3], bound: f64) -> Option<Lanes> {
-        let n = [load(&b.normal[0]), load(&b.normal[1]), load(&b.normal[2])];
-        let dn = dot(d, n);
-        let t = _mm256_div_pd(_mm256_sub_pd(load(&b.offset), dot(n, o)), dn);
-        let eps = _mm256_set1_pd(EPSILON);
-        let size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), dn);
-        let mut ok = _mm256_and_pd(
-            _mm256_cmp_pd::<_CMP_GT_OQ>(size, eps),
-            _mm256_and_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(t, eps), _mm256_cmp_pd::<_CMP_LE_OQ>(t, _mm256_set1_pd(bound))),
-        );
-        let p = [
-            _mm256_add_pd(o[0], _mm256_mul_pd(d[0], t)),
-            _mm256_add_pd(o[1], _mm256_mul_pd(d[1], t)),
-            _mm256_add_pd(o[2], _mm256_mul_pd(d[2], t)),
-        ];
-        // The two coordinates after the dropped one.
-        let dropped = _mm256_cvtepu8_epi64(_mm_cvtsi32_si128(i32::from_le_bytes(b.dropped)));
-        let is0 = _mm256_castsi256_pd(_mm256_cmpeq_epi64(dropped, _mm256_setzero_si256()));
-        let is1 = _mm256_castsi256_pd(_mm256_cmpeq_epi64(dropped, _mm256_set1_epi64x(1)));
-        let x = _mm256_blendv_pd(_mm256_blendv_pd(p[0], p[2], is1), p[1], is0);
-        let y = _mm256_blendv_pd(_mm256_blendv_pd(p[1], p[0], is1), p[2], is0);
-        let mut dx0 = _mm256_sub_pd(load(&b.x[K - 1]), x);
-        let mut dy0 = _mm256_sub_pd(load(&b.y[K - 1]), y);
-        let mut least = _mm256_set1_pd(f64::INFINITY);
-        for k in 0..K {
-            let dx1 = _mm256_sub_pd(load(&b.x[k]), x);
-            let dy1 = _mm256_sub_pd(load(&b.y[k]), y);
-            least = _mm256_min_pd(minor(dx0, dy1, dy0, dx1), least);
-            (dx0, dy0) = (dx1, dy1);
-        }
-        // SAFETY: the array has room for one unaligned vector.
-        let margin = _mm256_cvtps_pd(unsafe { _mm_loadu_ps(b.margin.as_ptr()) });
-        let margin = _mm256_xor_pd(margin, _mm256_set1_pd(-0.0));
-        ok = _mm256_and_pd(ok, _mm256_cmp_pd::<_CMP_GE_OQ>(least, margin));
-        let mask = _mm256_movemask_pd(ok) as u32;
-        (mask != 0).then(|| Lanes { mask, distance: store(t), edge: store(least) })
-    }
-
-    /// The vector twin of [`Trios::test`].
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn trios(b: &Trios, s: &Shear) -> u32 {
-        let [i, j, k] = s.axes;
-        let o = s.origin;
-        let (oi, oj, ok) = (_mm256_set1_pd(o[i]), _mm256_set1_pd(o[j]), _mm256_set1_pd(o[k]));
-        let (si, sj) = (_mm256_set1_pd(s.slope[0]), _mm256_set1_pd(s.slope[1]));
-        let corner = |c: usize| {
-            let v = &b.corners[c];
-            let height = _mm256_sub_pd(load(&v[k]), ok);
-            let x = _mm256_sub_pd(_mm256_sub_pd(load(&v[i]), oi), _mm256_mul_pd(si, height));
-            let y = _mm256_sub_pd(_mm256_sub_pd(load(&v[j]), oj), _mm256_mul_pd(sj, height));
-            (x, y)
-        };
-        let v = [corner(0), corner(1), corner(2)];
-        let sign = _mm256_set1_pd(-0.0);
-        let (mut positive, mut negative) = (_mm256_setzero_pd(), _mm256_setzero_pd());
-        for c in 0..3 {
-            let (a, b) = (v[c], v[(c + 1) % 3]);
-            let (p, q) = (_mm256_mul_pd(a.0, b.1), _mm256_mul_pd(a.1, b.0));
-            let size = _mm256_add_pd(_mm256_andnot_pd(sign, p), _mm256_andnot_pd(sign, q));
-            let unsure = _mm256_mul_pd(_mm256_set1_pd(UNSURE), size);
-            let d = _mm256_sub_pd(p, q);
-            positive = _mm256_or_pd(positive, _mm256_cmp_pd::<_CMP_GT_OQ>(d, unsure));
-            negative = _mm256_or_pd(negative, _mm256_cmp_pd::<_CMP_GT_OQ>(_mm256_xor_pd(d, sign), unsure));
-        }
-        !_mm256_movemask_pd(_mm256_and_pd(positive, negative)) as u32 & 0xf
-    }
-
     /// The vector twin of [`crate::walk::walk`].
     #[inline]
     #[target_feature(enable = "avx2,fma")]
@@ -252,9 +237,9 @@ mod present {
         e: &Entry,
         bound: f64,
         fetch: impl Fn(u32),
-        mut leaf: impl FnMut(u32) -> Option<f32>,
-    ) {
-        let set = |v: &[f32; 3]| [_mm256_set1_ps(v[0]), _mm256_set1_ps(v[1]), _mm256_set1_ps(v[2])];
+        mut leaf: impl FnMut(u32, f32) -> Option<f32>,
+    ) -> f32 {
+        let set = |v: &[f32; 4]| [_mm256_set1_ps(v[0]), _mm256_set1_ps(v[1]), _mm256_set1_ps(v[2])];
         let (inverse, near, far) = (set(&e.inverse), set(&e.near), set(&e.far));
         let array = e.array;
         let mut reach = e.reach(bound);
@@ -265,7 +250,7 @@ mod present {
         loop {
             if word & LEAF != 0 {
                 // Most leaves are missed: then nothing has to be computed again.
-                if let Some(nearer) = leaf(word) {
+                if let Some(nearer) = leaf(word, reach) {
                     reach = nearer;
                 }
             } else {
@@ -334,7 +319,7 @@ mod present {
             }
             loop {
                 if top == 0 {
-                    return;
+                    return reach;
                 }
                 top -= 1;
                 // SAFETY: entries below the former `top` have been written.

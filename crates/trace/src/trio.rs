@@ -1,4 +1,4 @@
-//! Mesh triangles, four to a block: does a line pass through, without cracks and double hits.
+//! Mesh triangles: does a line pass through, without cracks and double hits.
 //!
 //! Vertices are sheared so that the ray runs along an axis (Woop, Benthin and Wald 2013); what remains is whether the
 //! origin of a plane lies inside a triangle. A vertex has the same sheared coordinates in all its triangles, and the
@@ -6,11 +6,10 @@
 //! along one axis, then along the other (Edelsbrunner and Mücke 1990). So every line through a closed surface passes
 //! through it consistently, at edges and vertices too.
 
-use crate::facet::LANES;
 use ambit_base::DVec3;
 
 /// Products whose difference is below this share of their sum may have the wrong sign: 4 roundings.
-pub(crate) const UNSURE: f64 = 2.0 * f64::EPSILON;
+const UNSURE: f64 = 2.0 * f64::EPSILON;
 
 /// A ray, and how to shear vertices for it.
 #[derive(Clone, Copy, Debug)]
@@ -38,82 +37,35 @@ impl Shear {
     }
 }
 
-/// Four triangles, component by component.
+/// One triangle of a mesh.
 #[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub(crate) struct Trios {
-    /// By corner, axis and lane.
-    pub(crate) corners: [[[f64; LANES]; 3]; 3],
-    /// Numbers of the triangles; `u32::MAX` for none.
-    pub(crate) triangle: [u32; LANES],
+pub(crate) struct Trio {
+    /// Numbers of its vertices.
+    pub(crate) corners: [u32; 3],
+    /// Its own number in the mesh.
+    pub(crate) number: u32,
 }
 
-impl Trios {
-    pub(crate) fn pack(list: &[u32; LANES], triangles: &[[u32; 3]], vertices: &[DVec3]) -> Self {
-        let mut corners = [[[0.0; LANES]; 3]; 3];
-        for (lane, &number) in list.iter().enumerate().filter(|(_, t)| **t != u32::MAX) {
-            for (corner, v) in corners.iter_mut().zip(triangles[number as usize]) {
-                for (axis, slot) in corner.iter_mut().enumerate() {
-                    slot[lane] = vertices[v as usize][axis];
-                }
-            }
-        }
-        Self { corners, triangle: *list }
-    }
-
-    /// Lanes that hold a triangle.
+impl Shear {
     #[inline]
-    pub(crate) fn used(&self) -> u8 {
-        (0..LANES).fold(0, |m, i| m | u8::from(self.triangle[i] != u32::MAX) << i)
+    fn apply(&self, v: DVec3) -> [f64; 2] {
+        let [i, j, k] = self.axes;
+        let (v, o) = (v.to_array(), self.origin.to_array());
+        let height = v[k] - o[k];
+        [v[i] - o[i] - self.slope[0] * height, v[j] - o[j] - self.slope[1] * height]
     }
 
-    pub(crate) fn corner(&self, k: usize, lane: usize) -> DVec3 {
-        DVec3::new(self.corners[k][0][lane], self.corners[k][1][lane], self.corners[k][2][lane])
-    }
-
-    /// Normal of the front, twice the area long.
-    pub(crate) fn normal(&self, lane: usize) -> DVec3 {
-        let a = self.corner(0, lane);
-        (self.corner(1, lane) - a).cross(self.corner(2, lane) - a)
-    }
-
-    fn sheared(&self, s: &Shear, lane: usize) -> [[f64; 2]; 3] {
-        let [i, j, k] = s.axes;
-        [0, 1, 2].map(|c| {
-            let v = &self.corners[c];
-            let height = v[k][lane] - s.origin[k];
-            [v[i][lane] - s.origin[i] - s.slope[0] * height, v[j][lane] - s.origin[j] - s.slope[1] * height]
-        })
-    }
-
-    /// Lanes that the line is not sure to miss.
-    pub(crate) fn test(&self, s: &Shear) -> u32 {
-        let mut mask = 0;
-        for lane in 0..LANES {
-            let v = self.sheared(s, lane);
-            let (mut positive, mut negative) = (false, false);
-            for c in 0..3 {
-                let (a, b) = (v[c], v[(c + 1) % 3]);
-                let (p, q) = (a[0] * b[1], a[1] * b[0]);
-                let unsure = UNSURE * (p.abs() + q.abs());
-                positive |= p - q > unsure;
-                negative |= q - p > unsure;
-            }
-            mask |= u32::from(!(positive && negative)) << lane;
-        }
-        mask
-    }
-
-    /// Does the line pass through?
-    pub(crate) fn passes(&self, s: &Shear, lane: usize) -> bool {
-        let v = self.sheared(s, lane);
+    /// Does the line pass through the triangle?
+    #[inline]
+    pub(crate) fn passes(&self, corners: &[DVec3; 3]) -> bool {
+        let v = corners.map(|c| self.apply(c));
         let left = [0, 1, 2].map(|c| runs_left(v[c], v[(c + 1) % 3]));
         left[0] == left[1] && left[1] == left[2]
     }
 
     /// Weights of the corners where the line passes.
-    pub(crate) fn weights(&self, s: &Shear, lane: usize) -> [f64; 3] {
-        let v = self.sheared(s, lane);
+    pub(crate) fn weights(&self, corners: &[DVec3; 3]) -> [f64; 3] {
+        let v = corners.map(|c| self.apply(c));
         let e = [0, 1, 2].map(|c| {
             let (a, b) = (v[c], v[(c + 1) % 3]);
             a[0] * b[1] - a[1] * b[0]
@@ -124,8 +76,15 @@ impl Trios {
     }
 }
 
+/// Normal of the front, twice the area long.
+#[inline]
+pub(crate) fn normal(corners: &[DVec3; 3]) -> DVec3 {
+    (corners[1] - corners[0]).cross(corners[2] - corners[0])
+}
+
 /// Does the edge from `a` to `b` pass the origin on its right, the origin displaced by a vanishing amount if it lies
 /// on the edge's line? Swapping the ends always swaps the answer, unless the ends are equal.
+#[inline]
 fn runs_left(a: [f64; 2], b: [f64; 2]) -> bool {
     let (p, q) = (a[0] * b[1], a[1] * b[0]);
     let d = p - q;
@@ -175,9 +134,7 @@ mod tests {
                 let passed = (0..n)
                     .filter(|&i| {
                         let vertices = [DVec3::ZERO, rim[i], rim[(i + 1) % n]];
-                        let t = Trios::pack(&[0, u32::MAX, u32::MAX, u32::MAX], &[[0, 1, 2]], &vertices);
-                        assert!(t.test(&s) & 1 == 1 || !t.passes(&s, 0));
-                        t.passes(&s, 0)
+                        s.passes(&vertices)
                     })
                     .count();
                 assert_eq!(passed, 1, "{n} {shift}");

@@ -7,6 +7,7 @@
 //! the origin is shifted by 8u|o| against each plane, plus `noise`, a bound of the rounding in f64; so no box is missed
 //! that holds a point of the ray, and the widening costs nothing in the walk itself (compare Ize 2013).
 
+use crate::block::Scale;
 use crate::collapse::SLACK;
 use crate::node::{LEAF, Node, WIDTH};
 use crate::ray::Ray;
@@ -14,13 +15,13 @@ use ambit_base::DVec3;
 use ambit_scene::Bounds;
 
 /// Directions below this are replaced by it, so that no product overflows.
-const LEAST_DIRECTION: f32 = 1e-20;
+pub(crate) const LEAST_DIRECTION: f32 = 1e-20;
 
 /// Relative rounding of a handful of operations in f64.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+pub(crate) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// How far off a distance in f64 can be for a unit of coordinate, met at a cosine of ε.
-const GRAZING: f64 = 1e-9;
+pub(crate) const GRAZING: f64 = 1e-9;
 
 /// Entries of the stacks: enough for ordinary trees, and for any.
 pub(crate) const STACK: usize = 160;
@@ -31,41 +32,79 @@ pub(crate) fn stack_needed(depth: usize) -> usize {
     depth * (WIDTH - 1) + 1
 }
 
+/// What every ray needs to know of a tree before it enters.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gate {
+    /// What the tree's boxes are relative to.
+    pub(crate) centre: DVec3,
+    /// Around everything, with room for tolerances.
+    pub(crate) bounds: Bounds,
+    /// Largest coordinate of the bounds.
+    pub(crate) extent: f64,
+}
+
+impl Gate {
+    pub(crate) fn new(bounds: Bounds, centre: DVec3) -> Self {
+        let extent = bounds.min.abs().max_element().max(bounds.max.abs().max_element());
+        Self { centre, bounds, extent }
+    }
+
+    /// What the margins of blocks depend on.
+    pub(crate) fn scale(&self) -> Scale {
+        let (low, high) = (self.bounds.min - self.centre, self.bounds.max - self.centre);
+        Scale { centre: self.centre, span: low.abs().max(high.abs()).max_element(), extent: self.extent }
+    }
+}
+
 /// A ray made ready for a tree.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
     /// Distance by which the origin was moved.
-    start: f64,
+    pub(crate) start: f64,
     /// Largest coordinate involved, for the rounding of distances.
-    extent: f64,
-    pub(crate) inverse: [f32; 3],
+    pub(crate) extent: f64,
+    pub(crate) inverse: [f32; 4],
     /// Origin × inverse, shifted for near planes.
-    pub(crate) near: [f32; 3],
+    pub(crate) near: [f32; 4],
     /// Origin × inverse, shifted for far planes.
-    pub(crate) far: [f32; 3],
+    pub(crate) far: [f32; 4],
     /// Which of a node's arrays hold the near planes; the far ones are their neighbours.
     pub(crate) array: [usize; 3],
 }
 
-impl Entry {
+/// Where a ray begins to be walked: how far from its origin, and the largest coordinate involved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Start {
+    pub(crate) distance: f64,
+    pub(crate) extent: f64,
+}
+
+impl Start {
     /// None if the ray misses the box, or has coordinates that are no numbers.
-    #[inline]
-    pub(crate) fn new(bounds: &Bounds, centre: DVec3, ray: &Ray) -> Option<Self> {
+    pub(crate) fn new(gate: &Gate, ray: &Ray) -> Option<Self> {
         let (o, d) = (ray.origin, ray.direction);
         let reach = o.abs().max_element();
-        let extent = reach.max(bounds.min.abs().max_element()).max(bounds.max.abs().max_element());
-        if !(reach.is_finite() && d.is_finite()) || bounds.is_empty() {
+        if !(reach.is_finite() && o.is_finite() && d.is_finite()) || gate.bounds.is_empty() {
             return None;
         }
+        let extent = reach.max(gate.extent);
+        let outside = o.cmplt(gate.bounds.min).any() || o.cmpgt(gate.bounds.max).any();
+        let distance = if outside { enter(&gate.bounds, extent * ROUNDING, o, d)? } else { 0.0 };
+        Some(Self { distance, extent })
+    }
+}
+
+impl Entry {
+    /// None if the ray misses the box, or has coordinates that are no numbers.
+    pub(crate) fn new(gate: &Gate, ray: &Ray) -> Option<Self> {
+        let Start { distance: start, extent } = Start::new(gate, ray)?;
         let noise = extent * ROUNDING;
-        let outside = o.cmplt(bounds.min).any() || o.cmpgt(bounds.max).any();
-        let start = if outside { enter(bounds, noise, o, d)? } else { 0.0 };
-        let origin = (o + d * start - centre).to_array();
-        let d = d.to_array();
-        let mut entry = Self { start, extent, inverse: [0.0; 3], near: [0.0; 3], far: [0.0; 3], array: [0, 2, 4] };
+        let origin = (ray.origin + ray.direction * start - gate.centre).to_array();
+        let d = ray.direction.to_array();
+        let mut entry = Self { start, extent, inverse: [0.0; 4], near: [0.0; 4], far: [0.0; 4], array: [0, 2, 4] };
         for a in 0..3 {
             let (o, d) = (origin[a] as f32, d[a] as f32);
-            let r = 1.0 / if d.abs() < LEAST_DIRECTION { LEAST_DIRECTION.copysign(d) } else { d };
+            let r = 1.0 / d.abs().max(LEAST_DIRECTION).copysign(d);
             let shift = (SLACK * o.abs() + noise as f32).copysign(r);
             entry.inverse[a] = r;
             entry.near[a] = -((o + shift) * r);
@@ -75,11 +114,18 @@ impl Entry {
         Some(entry)
     }
 
+    /// The distance from the ray's origin that a distance in the walk stands for, rounded up.
+    #[inline]
+    pub(crate) fn distance(&self, reach: f32) -> f64 {
+        (self.start + f64::from(reach)) * (1.0 + ROUNDING)
+    }
+
     /// The distance in the walk beyond which nothing within `bound` of the ray's origin can lie.
     #[inline]
     pub(crate) fn reach(&self, bound: f64) -> f32 {
         let t = bound - self.start + GRAZING * self.extent;
-        (t as f32 * (1.0 + 8.0 * f32::EPSILON)).next_up()
+        // The last term is for distances so small that f32 has fewer digits for them.
+        t as f32 * (1.0 + 8.0 * f32::EPSILON) + f32::MIN_POSITIVE
     }
 }
 

@@ -1,16 +1,15 @@
 //! A world: everything an octree holds, ready for rays.
 
-use crate::best::Candidate;
 use crate::bounds;
-
-use crate::facet::{FAR_RANK, Facets};
+use crate::facet::Facets;
 use crate::item::{Content, Item};
 use crate::node::{self, NOWHERE, Node, QUADS, TRIANGLES};
-use crate::ray::{Hit, Opacity, Rank, Ray, Shadow};
+use crate::ray::{Hit, Rank, Ray, Shadow};
 use crate::search::{Aim, Found, Search};
 use crate::simd::Vector;
+use crate::walk::Gate;
 use ambit_base::{DVec3, EPSILON, Transform};
-use ambit_scene::{Bounds, ObjectId, VOID};
+use ambit_scene::{Bounds, ObjectId};
 
 /// Surfaces, instances and meshes in one coordinate system. Immutable; made by [`WorldBuilder`](crate::WorldBuilder).
 #[derive(Debug)]
@@ -18,19 +17,16 @@ pub struct World {
     pub(crate) nodes: Vec<Node>,
     /// True if the walk needs the large stack.
     pub(crate) deep: bool,
-    /// What the tree's boxes are relative to.
-    pub(crate) centre: DVec3,
-    /// Around everything, with room for tolerances.
-    pub(crate) bounds: Bounds,
-    pub(crate) triangles: Vec<Facets<3>>,
-    pub(crate) quads: Vec<Facets<4>>,
+    pub(crate) gate: Gate,
+    pub(crate) triangles: Facets<3>,
+    pub(crate) quads: Facets<4>,
     pub(crate) items: Vec<Item>,
+    /// Indices into `ranks`, by item.
+    pub(crate) item_ranks: Vec<u32>,
     /// Projected vertices of general polygons.
     pub(crate) points: Vec<[f64; 2]>,
-    /// Numbers of the objects with a rank or place start here.
+    /// Numbers of the objects with a place start here.
     pub(crate) first: ObjectId,
-    /// By object: index into `ranks`.
-    pub(crate) rank_of: Vec<u32>,
     /// By object: where it is.
     pub(crate) place_of: Vec<u32>,
     pub(crate) ranks: Vec<Rank>,
@@ -87,11 +83,11 @@ impl World {
             return None;
         }
         let (o, d) = (ray.origin, ray.direction);
-        let (kind, index, lane) = node::split(place);
+        let (kind, index) = node::split(place);
         let t = match kind {
-            TRIANGLES => self.triangles[index].hit(lane, o, d)?,
-            QUADS => self.quads[index].hit(lane, o, d)?,
-            _ => self.items[index].hit(&self.points, o, d, f64::INFINITY)?.0,
+            TRIANGLES => self.triangles.list[index].hit(o, d, f64::INFINITY)?,
+            QUADS => self.quads.list[index].hit(o, d, f64::INFINITY)?,
+            _ => self.items[index].hit(&self.points, o, d, f64::INFINITY)?,
         };
         (t < ray.limit).then_some(t)
     }
@@ -115,12 +111,12 @@ impl World {
 
     /// The box around everything, wider than the surfaces by the tolerances of the hit tests; empty if nothing is there.
     pub fn bounds(&self) -> Bounds {
-        self.bounds
+        self.gate.bounds
     }
 
     /// Counts for those who tune: nodes, blocks of triangles, blocks of quadrilaterals, other items.
     pub fn sizes(&self) -> [usize; 4] {
-        [self.nodes.len(), self.triangles.len(), self.quads.len(), self.items.len()]
+        [self.nodes.len(), self.triangles.blocks.len(), self.quads.blocks.len(), self.items.len()]
     }
 
     /// Bytes held by this world alone, without the instances and meshes it shares.
@@ -130,11 +126,11 @@ impl World {
         }
         size_of::<Self>()
             + held(&self.nodes)
-            + held(&self.triangles)
-            + held(&self.quads)
+            + self.triangles.memory()
+            + self.quads.memory()
             + held(&self.items)
+            + held(&self.item_ranks)
             + held(&self.points)
-            + held(&self.rank_of)
             + held(&self.place_of)
             + held(&self.ranks)
             + held(&self.placed)
@@ -148,22 +144,37 @@ impl World {
         self
     }
 
-    /// The rank of a surface that was hit.
+    /// The rank of the surface at a place.
     #[inline]
-    pub(crate) fn rank_at(&self, c: &Candidate) -> Rank {
-        let (kind, index, lane) = node::split(c.place);
-        let near = match kind {
-            TRIANGLES => self.triangles[index].rank[lane],
-            QUADS => self.quads[index].rank[lane],
-            _ => FAR_RANK,
+    pub(crate) fn rank(&self, place: u32) -> Rank {
+        let (kind, index) = node::split(place);
+        let rank = match kind {
+            TRIANGLES => self.triangles.list[index].rank(),
+            QUADS => self.quads.list[index].rank(),
+            _ => self.item_ranks[index] as usize,
         };
-        if near == FAR_RANK { self.rank(c.object) } else { self.ranks[near as usize] }
+        self.ranks[rank]
     }
 
+    /// The object at a place.
     #[inline]
-    fn rank(&self, object: ObjectId) -> Rank {
-        let index = object.checked_sub(self.first).and_then(|i| self.rank_of.get(i as usize));
-        let rank = index.and_then(|&i| self.ranks.get(i as usize));
-        rank.copied().unwrap_or(Rank { opacity: Opacity::Nothing, modifier: VOID, blocks: false, bends: false })
+    pub(crate) fn object(&self, place: u32) -> ObjectId {
+        let (kind, index) = node::split(place);
+        match kind {
+            TRIANGLES => self.triangles.list[index].object,
+            QUADS => self.quads.list[index].object,
+            _ => self.items[index].object(),
+        }
+    }
+
+    /// The normal of the surface at a place, where the ray hits it.
+    #[inline]
+    pub(crate) fn normal(&self, place: u32, ray: &Ray) -> DVec3 {
+        let (kind, index) = node::split(place);
+        match kind {
+            TRIANGLES => self.triangles.list[index].normal,
+            QUADS => self.quads.list[index].normal,
+            _ => self.items[index].normal(ray.origin, ray.direction),
+        }
     }
 }

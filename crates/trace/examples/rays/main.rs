@@ -1,6 +1,8 @@
 //! Rays per second on a generated room, and memory.
 //!
-//! `cargo run --release -p ambit-trace --example rays -- [scalar] [mesh] [triangles=1000000] [serve=FOLDER]`
+//! `cargo run --release -p ambit-trace --example rays -- [scalar] [mesh] [triangles=1000000] [quads=N] [serve=FOLDER]`
+//!
+//! `quads` makes it a furnished room of that many quadrilaterals instead, as most scenes are.
 //!
 //! Without `serve` it times each set of rays five times and prints the best. With it, triangles and rays go into files of
 //! that folder, numbers in the order of a little-endian machine (`triangles`: nine f32 each, the lamp's two last;
@@ -89,7 +91,8 @@ fn main() -> std::io::Result<()> {
     let value = |name: &str| words.iter().find_map(|w| w.strip_prefix(name)?.strip_prefix('='));
     let wanted = value("triangles").map_or(1_000_000, |n| n.parse().expect("a number of triangles"));
     let rank = Rank { opacity: Opacity::Opaque, modifier: 0, blocks: true, bends: false };
-    let mut world = scene::build(wanted, has("mesh"), rank);
+    let quads = value("quads").map(|n| n.parse().expect("a number of quadrilaterals"));
+    let mut world = scene::build(wanted, has("mesh"), quads, rank);
     if has("scalar") {
         world = world.without_vectors();
     }

@@ -118,6 +118,36 @@ pub(crate) fn room(wanted: usize, mut emit: impl FnMut([DVec3; 3])) {
     }
 }
 
+/// About as many quadrilaterals as wanted: the same room with a smooth shell, furnished with boxes that stand on the floor or on
+/// each other.
+fn furnished(wanted: usize, mut emit: impl FnMut([DVec3; 4])) {
+    let mut rng = Rng(42);
+    let mut put = |centre: DVec3, half: DVec3, turn: f64, inward: bool| {
+        let (s, c) = turn.sin_cos();
+        let corner = |i: usize| {
+            let sign = |bit: usize| if i & bit == 0 { -1.0 } else { 1.0 };
+            let p = half * DVec3::new(sign(1), sign(2), sign(4));
+            single(centre + DVec3::new(c * p.x - s * p.y, s * p.x + c * p.y, p.z))
+        };
+        for mut f in [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]] {
+            if !inward {
+                f.reverse();
+            }
+            emit(f.map(corner));
+        }
+    };
+    put(DVec3::new(6.0, 4.5, 2.0), DVec3::new(6.0, 4.5, 2.0), 0.0, true);
+    let boxes = wanted.saturating_sub(6) / 6;
+    let size = (60.0 / (boxes as f64 + 1.0)).cbrt().min(1.4);
+    for i in 0..boxes {
+        let half = DVec3::new(0.1 + 0.5 * rng.unit(), 0.1 + 0.5 * rng.unit(), 0.1 + 0.5 * rng.unit()) * size;
+        let ground = if i % 3 == 0 { 0.0 } else { 2.5 * rng.unit() };
+        let place = DVec3::new(1.0 + 10.0 * rng.unit(), 1.0 + 7.0 * rng.unit(), half.z + ground);
+        let turn = if i % 2 == 0 { 0.0 } else { rng.unit() };
+        put(place, half, turn, false);
+    }
+}
+
 fn polygon(v: &[DVec3]) -> Option<Shape> {
     let mut sum = DVec3::ZERO;
     for i in 2..v.len() {
@@ -146,11 +176,18 @@ fn mesh(wanted: usize, rank: Rank) -> (Mesh, usize) {
 
 /// The world: object 0 is the lamp, object 2 + k the triangle k; or all triangles are one mesh, object 1. Says to
 /// standard error how large it is.
-pub(crate) fn build(wanted: usize, as_mesh: bool, rank: Rank) -> World {
+pub(crate) fn build(wanted: usize, as_mesh: bool, quads: Option<usize>, rank: Rank) -> World {
     let start = (Instant::now(), cpu());
     let mut b = WorldBuilder::new();
     let mut count = 0;
-    if as_mesh {
+    if let Some(quads) = quads {
+        furnished(quads, |q| {
+            if let Some(shape) = polygon(&q) {
+                b.add(count as u32 + 2, &shape, rank);
+            }
+            count += 1;
+        });
+    } else if as_mesh {
         let mesh;
         (mesh, count) = self::mesh(wanted, rank);
         eprintln!("mesh: {:.1} bytes a triangle", mesh.memory() as f64 / count as f64);
