@@ -13,6 +13,7 @@ use crate::finish::{Cell, Outcome, finish, least_distance, once};
 use crate::gather::{Job, Sampled, trace};
 use crate::hemisphere::Hemisphere;
 use crate::parallel::in_order;
+use crate::params::Limits;
 use crate::reuse::RENT;
 use crate::sampler::{Miss, Query, Sampler};
 use crate::select::{CAP, Selection, select};
@@ -242,7 +243,7 @@ impl Cache {
             let weight = self.limits.record_weight(level, q.weight);
             let stream = Stream::new(0, key(q, params.seed));
             let plan = match kept {
-                Kept::Yes => Hemisphere::new(&params, weight, 1.0, q.normal, stream, true),
+                Kept::Yes => Hemisphere::new(&params, Limits::share_of_samples(weight), 1.0, q.normal, stream, true),
                 Kept::No => Hemisphere::few(&params, weight / RENT as f32, q.normal, stream),
             };
             plan.map(|plan| Pick { query: chosen[k], plan, first: 0 })
@@ -302,7 +303,7 @@ impl Cache {
             let Pick { query, plan, first } = &picks[k];
             let own = &cells[*first..first + plan.len()];
             let weight = self.limits.record_weight(level, queries[*query].weight);
-            let budget = budget(params.super_samples, weight, plan.grid().side());
+            let budget = budget(params.super_samples, Limits::share_of_samples(weight), plan.grid().side());
             if budget == 0 || own.iter().any(|c| c.distance <= 0.0) {
                 return Vec::new();
             }
