@@ -13,8 +13,10 @@ use crate::sampler::SampleRay;
 use ambit_base::{DVec3, EPSILON, Frame, Stream};
 use std::f64::consts::TAU;
 
-/// Sides of the grid below which no record is made (49 samples).
+/// Sides of the grid below which no record is made: 49 samples where the eye looks, as in Radiance, 25 deeper, where the
+/// samples above average their noise.
 const MIN_SIDE: u32 = 7;
+const MIN_SIDE_DEEPER: u32 = 5;
 /// Largest side of the grid: beyond it memory, not noise, is what grows.
 const MAX_SIDE: u32 = 4096;
 /// The golden ratio's fraction: its multiples are spread over the unit interval as evenly as can be.
@@ -64,7 +66,11 @@ impl Hemisphere {
             // No child may fall below the smallest weight.
             weight = weight.min(0.8 * weight * f64::from(coefficient) / (divisions * params.min_weight));
         }
-        let least = if caching { MIN_SIDE } else { 1 };
+        let least = match caching {
+            false => 1,
+            true if weight < 1.0 => MIN_SIDE_DEEPER,
+            true => MIN_SIDE,
+        };
         let side = (((divisions * weight).sqrt() + 0.5) as u32).clamp(least, MAX_SIDE);
         let classical = caching && params.systems.spacing == Spacing::Classical;
         let grid = if classical { Grid::polar(divisions * weight) } else { Grid::Disk { side } };
@@ -186,6 +192,11 @@ mod tests {
         {
             assert_eq!(plan(divisions, true).len(), rays, "-ad {divisions}");
         }
+        let deeper = |divisions| {
+            let params = Params { divisions, ..Params::default() };
+            Hemisphere::new(&params, 0.25, 1.0, DVec3::Z, Stream::new(0, 7), true).unwrap().len()
+        };
+        assert_eq!([64, 128, 512].map(deeper), [25, 36, 121]);
         for (divisions, rays) in [(1, 1), (3, 4), (10, 9)] {
             assert_eq!(plan(divisions, false).len(), rays, "-ad {divisions} uncached");
         }
