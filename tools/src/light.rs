@@ -103,7 +103,7 @@ impl<'a> Scene<'a> {
             }
         }
         if rendering.statistics {
-            self.renderer.measure(crate::statistics::clock);
+            self.renderer.measure(crate::statistics::clock, crate::statistics::own);
         }
         self.session.begin_work();
         Ok(())

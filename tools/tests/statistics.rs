@@ -50,12 +50,17 @@ fn a_run_says_what_it_took() {
     let one = rtrace("--stats -n 1");
     assert_eq!(one.stdout, quiet.stdout);
     let lines = said(&one);
-    assert_eq!(lines.len(), 4, "{lines:?}");
+    assert_eq!(lines.len(), 5, "{lines:?}");
     assert!(first(&lines[0]) > 10 && lines[0].ends_with(", 0 from the ambient file"), "{lines:?}");
     assert!(first(&lines[1]) > 500 && lines[1].contains("% answered by records"), "{lines:?}");
     assert!(first(&lines[2]) > 64 * 10 && lines[2].contains("hemisphere samples"), "{lines:?}");
     // So short a run may have too few look-ups for an estimate, and then says so.
     assert!(lines[3].contains("interpolation error "), "{lines:?}");
+    let times = lines[4].split_once("by model ").unwrap().1;
+    let numbers: Vec<f64> = times.split([' ', '(', ',']).filter_map(|w| w.parse().ok()).collect();
+    // Seconds on 1, 2, 8, 64 cores, and what a step costs.
+    assert_eq!((numbers.len(), numbers[2], numbers[4], numbers[6]), (8, 2.0, 8.0, 64.0), "{times}");
+    assert!(numbers[0] > 0.0 && numbers[1] > 0.0, "{times}");
     // A second run makes none: all come from the file.
     let again = said(&rtrace("--stats -n 2"));
     let (made, loaded) = again[0].split_once(" made, ").unwrap();
@@ -65,6 +70,6 @@ fn a_run_says_what_it_took() {
     let picture =
         |more: &str| run(&folder, env!("CARGO_BIN_EXE_rpict"), &format!("{LIGHT} -x 16 -y 16 {more} s.oct"), "");
     assert_eq!(said(&picture("")).len(), 0);
-    assert_eq!(said(&picture("-t 1000")).len(), 4);
+    assert_eq!(said(&picture("-t 1000")).len(), 5);
     assert_eq!(said(&picture("-t 1000 -ab 0")).len(), 0);
 }

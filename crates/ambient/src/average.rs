@@ -8,6 +8,7 @@ use ambit_base::{Colour, EPSILON, Rgb};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Average {
     logarithms: f64,
+    sum: f64,
     count: u64,
 }
 
@@ -17,8 +18,14 @@ impl Average {
         let b = f64::from(value.brightness());
         if b > EPSILON {
             self.logarithms += b.ln();
+            self.sum += b;
             self.count += 1;
         }
+    }
+
+    /// The mean brightness of the records that are not black; 0 without any.
+    pub(crate) fn mean(&self) -> f64 {
+        if self.count == 0 { 0.0 } else { self.sum / self.count as f64 }
     }
 
     /// The radiance to use where the calculation stops.
@@ -43,7 +50,7 @@ mod tests {
     use super::*;
 
     fn average(sum: f64, n: u64) -> Average {
-        Average { logarithms: sum, count: n }
+        Average { logarithms: sum, count: n, ..Average::default() }
     }
 
     #[test]

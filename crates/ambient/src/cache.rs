@@ -8,6 +8,7 @@ use crate::radii::ANISOTROPY;
 use crate::record::Record;
 use crate::reuse::Reuse;
 use crate::sampler::{Answer, Query, Sampler};
+use crate::steps::Steps;
 use crate::store::Store;
 use ambit_base::{DVec3, Rgb};
 use std::sync::Arc;
@@ -48,6 +49,7 @@ pub struct Cache {
     /// Counts look-ups, if they are to be counted.
     pub(crate) observer: Option<Arc<Observer>>,
     pub(crate) stopwatch: Stopwatch,
+    pub(crate) steps: Arc<Steps>,
     /// True if look-ups are answered from records and not counted.
     pub(crate) plain: bool,
 }
@@ -61,6 +63,7 @@ impl Cache {
             plain: params.caches(),
             observer: None,
             stopwatch: Stopwatch::default(),
+            steps: Arc::default(),
             params,
             average: Average::default(),
             quantised: false,

@@ -9,17 +9,13 @@
 //! and level, sums follow list order, and the constants below are part of the result.
 
 use crate::cache::Cache;
-use crate::finish::{Cell, Outcome, finish, least_distance, once};
-use crate::gather::{Job, Sampled, trace};
-use crate::hemisphere::Hemisphere;
-use crate::parallel::in_order;
-use crate::params::Limits;
+use crate::finish::Outcome;
 use crate::reuse::RENT;
+use crate::round::Kept;
 use crate::sampler::{Miss, Query, Sampler};
 use crate::select::{CAP, Selection, select};
 use crate::store::Store;
-use crate::supersample::{allocate, budget};
-use ambit_base::{Colour, Rgb, Stream, hash_bits, hash_point};
+use ambit_base::{Rgb, hash_bits, hash_point};
 
 /// Misses that are resolved together; later windows profit from the records of earlier ones.
 const WINDOW: usize = 4096;
@@ -27,26 +23,8 @@ const WINDOW: usize = 4096;
 /// those of a round see only the few below them and share their noise: records that come one after the other also see
 /// each other.
 const FIRST: usize = 2;
-/// Samples one task traces.
-const CHUNK: usize = 32;
 /// Look-ups below which a parallel step costs more than it saves.
 const FEW: usize = 64;
-
-/// Whether hemispheres are to become records.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Kept {
-    Yes,
-    No,
-}
-
-/// One hemisphere of a round.
-struct Pick {
-    /// The query's place in the window.
-    query: usize,
-    plan: Hemisphere,
-    /// The first of its cells among those of the round.
-    first: usize,
-}
 
 impl Cache {
     /// Computes what records are needed and answers every miss, in order. Values are irradiance/π at the query, to be
@@ -87,7 +65,8 @@ impl Cache {
         let mut open = window.to_vec();
         if stale {
             let cache = &*self;
-            let found = in_order(open.len(), FEW, FEW / 2, |i| cache.lookup(sampler, &misses[open[i]].query));
+            let found =
+                self.steps.in_order(open.len(), FEW, FEW / 2, |i| cache.lookup(sampler, &misses[open[i]].query));
             open = settle(&open, &found, values);
         }
         let queries: Vec<Query<S::Origin>> = open.iter().map(|&k| misses[k].query).collect();
@@ -110,7 +89,8 @@ impl Cache {
         // What the records around each query weigh together, where that matters.
         let enough = self.params.enough(level);
         let mut weights = if enough > 0.0 {
-            in_order(queries.len(), FEW, FEW / 2, |q| self.store.lookup(&limits, sampler, &queries[q]).weight)
+            self.steps
+                .in_order(queries.len(), FEW, FEW / 2, |q| self.store.lookup(&limits, sampler, &queries[q]).weight)
         } else {
             vec![0.0; queries.len()]
         };
@@ -136,7 +116,8 @@ impl Cache {
                 exempt[query] |= wasted[pick];
             }
             open.retain(|&q| !picked[q]);
-            let found = in_order(open.len(), FEW, FEW / 2, |i| delta.lookup(&limits, sampler, &queries[open[i]]));
+            let found =
+                self.steps.in_order(open.len(), FEW, FEW / 2, |i| delta.lookup(&limits, sampler, &queries[open[i]]));
             for (&q, sum) in open.iter().zip(&found) {
                 weights[q] += sum.weight;
             }
@@ -157,7 +138,7 @@ impl Cache {
             }
         }
         // The round's records alone gave a provisional answer; all of them give the final one.
-        let last = in_order(queries.len(), FEW, FEW / 2, |q| {
+        let last = self.steps.in_order(queries.len(), FEW, FEW / 2, |q| {
             if picked[q] { None } else { self.store.lookup(&limits, sampler, &queries[q]).answer() }
         });
         for (value, last) in values.iter_mut().zip(last) {
@@ -227,142 +208,6 @@ impl Cache {
         }
         delta
     }
-
-    /// Samples the hemispheres of a round and makes their records.
-    fn hemispheres<S: Sampler>(
-        &mut self,
-        sampler: &S,
-        level: u8,
-        queries: &[Query<S::Origin>],
-        chosen: &[usize],
-        kept: Kept,
-    ) -> Vec<Outcome> {
-        let params = self.params;
-        let mut picks: Vec<Pick> = in_order(chosen.len(), 2, 1, |k| {
-            let q = &queries[chosen[k]];
-            let weight = self.limits.record_weight(level, q.weight);
-            let stream = Stream::new(0, key(q, params.seed));
-            let plan = match kept {
-                Kept::Yes => Hemisphere::new(&params, Limits::share_of_samples(weight), 1.0, q.normal, stream, true),
-                Kept::No => Hemisphere::few(&params, weight / RENT as f32, q.normal, stream),
-            };
-            plan.map(|plan| Pick { query: chosen[k], plan, first: 0 })
-        })
-        .into_iter()
-        .flatten()
-        .collect();
-        debug_assert_eq!(picks.len(), chosen.len(), "a cache without divisions ends before this");
-        let mut total = 0;
-        for pick in &mut picks {
-            pick.first = total;
-            total += pick.plan.len();
-        }
-        let jobs = jobs(picks.iter().map(|p| p.plan.len()));
-        let sampled = trace(self, sampler, &jobs, |pick, sample| {
-            let Pick { query, plan, .. } = &picks[pick];
-            (&queries[*query], plan.ray(plan.direction(sample), sample))
-        });
-        let returned = self.completed(sampler, level, sampled);
-        let mut cells: Vec<Cell> = Vec::with_capacity(total);
-        let least = least_distance(&self.limits);
-        cells.extend(returned.iter().map(|r| match *r {
-            Some(s) => {
-                let distance = s.distance.max(least);
-                Cell { radiance: s.radiance, distance, nearness: 1.0 / distance }
-            }
-            None => Cell { radiance: Rgb::ZERO, distance: 0.0, nearness: 0.0 },
-        }));
-        if kept == Kept::Yes {
-            self.extras(sampler, level, queries, &picks, &mut cells);
-        }
-        let limits = self.limits;
-        let quantised = self.quantised;
-        in_order(picks.len(), 2, 1, |k| {
-            let Pick { query, plan, first } = &picks[k];
-            let own = &cells[*first..first + plan.len()];
-            if kept == Kept::No {
-                return once(&queries[*query], plan, own);
-            }
-            let outcome = finish(&limits, &queries[*query], plan, own);
-            if quantised { outcome.quantised(&queries[*query]) } else { outcome }
-        })
-    }
-
-    /// Extra samples where cells differ from their neighbours.
-    fn extras<S: Sampler>(
-        &mut self,
-        sampler: &S,
-        level: u8,
-        queries: &[Query<S::Origin>],
-        picks: &[Pick],
-        cells: &mut [Cell],
-    ) {
-        let params = self.params;
-        // Per pick, the cell of every extra sample and its number within the cell.
-        let wanted: Vec<Vec<(usize, u32)>> = in_order(picks.len(), 2, 1, |k| {
-            let Pick { query, plan, first } = &picks[k];
-            let own = &cells[*first..first + plan.len()];
-            let weight = self.limits.record_weight(level, queries[*query].weight);
-            let budget = budget(params.super_samples, Limits::share_of_samples(weight), plan.grid().side());
-            if budget == 0 || own.iter().any(|c| c.distance <= 0.0) {
-                return Vec::new();
-            }
-            let brightness: Vec<f32> = own.iter().map(|c| c.radiance.brightness()).collect();
-            let counts =
-                allocate([plan.grid().rows(), plan.grid().columns()], &brightness, budget, |cell| plan.share(cell));
-            counts.iter().enumerate().flat_map(|(cell, &m)| (0..m).map(move |k| (cell, k))).collect()
-        });
-        if wanted.iter().all(Vec::is_empty) {
-            return;
-        }
-        let jobs = jobs(wanted.iter().map(Vec::len));
-        let sampled = trace(self, sampler, &jobs, |pick, sample| {
-            let Pick { query, plan, .. } = &picks[pick];
-            let (cell, k) = wanted[pick][sample];
-            let direction = plan.frame().to_world(plan.extra_local(cell, k));
-            (&queries[*query], plan.ray(direction, plan.len() + sample))
-        });
-        let returned = self.completed(sampler, level, sampled);
-        let least = least_distance(&self.limits);
-        let mut returned = returned.iter();
-        for (pick, wanted) in picks.iter().zip(&wanted) {
-            for run in wanted.chunk_by(|a, b| a.0 == b.0) {
-                let cell = &mut cells[pick.first + run[0].0];
-                let (mut sum, mut count) = (cell.radiance, 1.0);
-                for sample in returned.by_ref().take(run.len()).flatten() {
-                    sum += sample.radiance;
-                    count += 1.0;
-                    cell.nearness = cell.nearness.max(1.0 / sample.distance.max(least));
-                }
-                cell.radiance = sum / count;
-            }
-        }
-    }
-
-    /// Resolves what the samples missed, one level down, and adds it to them.
-    fn completed<S: Sampler>(
-        &mut self,
-        sampler: &S,
-        level: u8,
-        sampled: Sampled<S::Origin>,
-    ) -> Vec<Option<crate::Sample>> {
-        let Sampled { mut returned, owners, misses, repaired } = sampled;
-        let level = usize::from(level);
-        if self.statistics.samples.len() <= level {
-            self.statistics.samples.resize(level + 1, 0);
-        }
-        self.statistics.samples[level] += returned.len() as u64;
-        self.statistics.repaired += repaired;
-        if !misses.is_empty() {
-            let answers = self.resolve(sampler, &misses);
-            for ((owner, miss), answer) in owners.iter().zip(&misses).zip(answers) {
-                if let Some(sample) = &mut returned[*owner as usize] {
-                    sample.radiance += miss.coefficient * answer;
-                }
-            }
-        }
-        returned
-    }
 }
 
 /// Takes what was found as values; returns what is still open.
@@ -375,16 +220,6 @@ fn settle(open: &[usize], found: &[Option<Rgb>], values: &mut [Rgb]) -> Vec<usiz
         }
     }
     left
-}
-
-/// Tasks of at most [`CHUNK`] samples of one hemisphere.
-fn jobs(lengths: impl Iterator<Item = usize>) -> Vec<Job> {
-    let mut jobs = Vec::new();
-    for (pick, length) in lengths.enumerate() {
-        let starts = (0..length).step_by(CHUNK);
-        jobs.extend(starts.map(|from| Job { pick, from, to: (from + CHUNK).min(length) }));
-    }
-    jobs
 }
 
 /// Names the random numbers of a record by what it is: position, normal and level.

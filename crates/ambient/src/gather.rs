@@ -1,18 +1,14 @@
-//! Tracing many samples at once: in parallel tasks, laid out by index.
+//! Tracing the samples of a hemisphere: in parallel tasks, laid out by index.
 
 use crate::cache::Cache;
-use crate::parallel::in_order;
 use crate::sampler::{Miss, Query, Sample, SampleRay, Sampler};
+use crate::steps::Chain;
 use ambit_base::Rgb;
 
-/// The samples `from..to` of a hemisphere.
-pub(crate) struct Job {
-    pub(crate) pick: usize,
-    pub(crate) from: usize,
-    pub(crate) to: usize,
-}
+/// Samples one task traces: few enough that no core waits long for the last.
+const CHUNK: usize = 16;
 
-/// What all jobs brought back, in order.
+/// What samples brought back, in order.
 pub(crate) struct Sampled<O> {
     pub(crate) returned: Vec<Option<Sample>>,
     /// Of each miss, the sample it belongs to.
@@ -23,35 +19,34 @@ pub(crate) struct Sampled<O> {
 }
 
 impl<O> Sampled<O> {
-    fn with_capacity(samples: usize) -> Self {
-        Self { returned: Vec::with_capacity(samples), owners: Vec::new(), misses: Vec::new(), repaired: 0 }
+    fn with_capacity(samples: usize, misses: usize) -> Self {
+        let (owners, misses) = (Vec::with_capacity(misses), Vec::with_capacity(misses));
+        Self { returned: Vec::with_capacity(samples), owners, misses, repaired: 0 }
     }
 }
 
-/// Traces the samples of all jobs; `ray` gives the query and the ray of a sample of a pick.
-pub(crate) fn trace<'q, S: Sampler>(
+/// Traces so many samples of a query's hemisphere; `ray` gives each one's ray.
+pub(crate) fn trace<S: Sampler>(
     cache: &Cache,
     sampler: &S,
-    jobs: &[Job],
-    ray: impl Fn(usize, usize) -> (&'q Query<S::Origin>, SampleRay) + Sync + Send,
-) -> Sampled<S::Origin>
-where
-    S::Origin: 'q,
-{
-    let parts = in_order(jobs.len(), 2, 1, |k| {
-        let job = &jobs[k];
-        let mut part = Sampled::with_capacity(job.to - job.from);
+    query: &Query<S::Origin>,
+    count: usize,
+    chain: &mut Chain,
+    ray: impl Fn(usize) -> SampleRay + Sync + Send,
+) -> Sampled<S::Origin> {
+    let parts = chain.in_order(count.div_ceil(CHUNK), 1, |task| {
+        let samples = task * CHUNK..count.min((task + 1) * CHUNK);
+        let mut part = Sampled::with_capacity(samples.len(), 0);
         let mut scratch = sampler.scratch();
-        for sample in job.from..job.to {
-            let (query, ray) = ray(job.pick, sample);
-            let returned = sampler.sample(&mut scratch, cache, query, ray, &mut part.misses);
+        for sample in samples {
+            let returned = sampler.sample(&mut scratch, cache, query, ray(sample), &mut part.misses);
             let index = part.returned.len() as u32;
             part.owners.resize(part.misses.len(), index);
             part.returned.push(returned.map(|s| repair(s, &mut part.repaired)));
         }
         part
     });
-    let mut all = Sampled::with_capacity(parts.iter().map(|p| p.returned.len()).sum());
+    let mut all = Sampled::with_capacity(count, parts.iter().map(|p| p.misses.len()).sum());
     for part in parts {
         let base = all.returned.len() as u32;
         all.owners.extend(part.owners.iter().map(|o| o + base));

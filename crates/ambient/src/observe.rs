@@ -4,10 +4,12 @@
 //! one whether to cache. Counts are integers, one set a thread, so that their sums do not depend on threads. Of one
 //! look-up in 64, chosen by its place, the records that answer together are compared: with weights ωᵢ and answers vᵢ
 //! around their mean v, `s² = Σ ωᵢ (vᵢ − v)² / Σ ωᵢ` says how far they differ, and `s √Σωᵢ² / Σωᵢ` how uncertain their mean
-//! is if they err independently: the estimated error of interpolation, from noise and extrapolation alike.
+//! is if they err independently: the estimated error of interpolation, from noise and extrapolation alike. Both are told
+//! relative to the mean of all records so far, as errors of pictures are: relative to v, dark corners would be all.
 
 use crate::cache::Cache;
 use crate::sampler::{Answer, Query, Sampler};
+use crate::steps::Steps;
 use ambit_base::{Colour, hash_point};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::Duration;
@@ -18,6 +20,8 @@ pub const LEVELS: usize = 8;
 const CLOSELY: u64 = 64;
 /// Fixed-point one of squared relative differences.
 const ONE: f64 = 4294967296.0;
+/// The largest that counts, so that sums cannot overflow.
+const MOST: f64 = 1e4;
 
 /// The counts of one thread, in a cache line or more of its own.
 #[derive(Debug, Default)]
@@ -71,9 +75,9 @@ pub struct Observed {
     pub answered: [u64; LEVELS],
     /// Look-ups whose records were compared: those with two or more.
     pub compared: u64,
-    /// Relative difference of the records that answer together, RMS.
+    /// Difference of the records that answer together, RMS, relative to the mean of all records.
     pub difference: f64,
-    /// Estimated relative error of interpolated values, RMS.
+    /// Estimated error of interpolated values, RMS, relative to the mean of all records.
     pub error: f64,
 }
 
@@ -113,6 +117,17 @@ impl Cache {
         self.plain = false;
     }
 
+    /// Times parallel steps and the work of this thread between them from now on: `wall` and `own` are the time, and the
+    /// processor time of the thread that asks.
+    pub fn time_steps(&mut self, wall: Clock, own: Clock) {
+        self.steps = Steps::timed(wall, own).into();
+    }
+
+    /// Does parallel steps: those of whoever asks the cache go with the cache's own where these are timed.
+    pub fn steps(&self) -> &Steps {
+        &self.steps
+    }
+
     /// What look-ups came to since [`Cache::observe`].
     pub fn observed(&self) -> Option<Observed> {
         self.observer.as_ref().map(|o| o.total())
@@ -146,11 +161,12 @@ impl Cache {
         let parts = self.store.contributions(&self.limits, sampler, query);
         let weights: f64 = parts.iter().map(|p| f64::from(p.0)).sum();
         let mean = parts.iter().map(|p| f64::from(p.0 * p.1.mean())).sum::<f64>() / weights;
-        if parts.len() < 2 || mean.is_nan() || mean <= 0.0 {
+        let whole = self.average.mean();
+        if parts.len() < 2 || mean.is_nan() || whole <= 0.0 {
             return;
         }
-        let apart = |p: &(f32, ambit_base::Rgb)| f64::from(p.0) * (f64::from(p.1.mean()) / mean - 1.0).powi(2);
-        let difference = parts.iter().map(apart).sum::<f64>() / weights;
+        let apart = |p: &(f32, ambit_base::Rgb)| f64::from(p.0) * ((f64::from(p.1.mean()) - mean) / whole).powi(2);
+        let difference = (parts.iter().map(apart).sum::<f64>() / weights).min(MOST);
         let error = difference * parts.iter().map(|p| f64::from(p.0).powi(2)).sum::<f64>() / weights.powi(2);
         counts.compared.fetch_add(1, Relaxed);
         counts.difference.fetch_add((difference * ONE) as u64, Relaxed);

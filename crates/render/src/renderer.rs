@@ -19,7 +19,6 @@ use crate::{Error, Options};
 use ambit_ambient::{Cache, Miss, Params};
 use ambit_base::{DVec3, FAR, Notify, Rgb, Stream, hash_bits};
 use ambit_scene::{ObjectId, VOID};
-use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::{Mutex, PoisonError};
 
@@ -27,6 +26,8 @@ use std::sync::{Mutex, PoisonError};
 const BATCH: usize = 4096;
 /// Fewer requests than this are shaded on the calling thread.
 const PARALLEL_FROM: usize = 8;
+/// Requests that are one task.
+const TOGETHER: usize = 16;
 
 /// `rtrace -I` starts its rays this far in front of the point of measurement, and declares them to hit a little
 /// behind that, scene units.
@@ -155,11 +156,8 @@ impl Renderer {
                 Walk { tracer: &tracer, cache, work: &mut work, misses: &mut misses, observer: () }.answer(request);
             (answer, misses)
         };
-        let shaded: Vec<(Answer, Vec<Miss<Origin>>)> = if requests.len() < PARALLEL_FROM {
-            requests.iter().map(one).collect()
-        } else {
-            requests.par_iter().with_max_len(16).map(one).collect()
-        };
+        let shaded: Vec<(Answer, Vec<Miss<Origin>>)> =
+            cache.steps().in_order(requests.len(), PARALLEL_FROM, TOGETHER, |i| one(&requests[i]));
         let first = answers.len();
         let mut misses = Vec::new();
         let mut owners = Vec::new();

@@ -1,7 +1,7 @@
 //! What a calculation took: records, look-ups, hemispheres, time. Counted for those who ask before it begins.
 
 use crate::Renderer;
-use ambit_ambient::{Clock, Observed, Record};
+use ambit_ambient::{Clock, Observed, Parallelism, Record};
 use std::time::Duration;
 
 /// Numbers of a level each; entry 0 is seen from the eye.
@@ -33,12 +33,18 @@ pub struct Report {
     pub filling: Duration,
     /// Look-ups and what they came to.
     pub observed: Observed,
+    /// What the same would take on other numbers of cores; not known of a calculation by wavelength.
+    pub parallelism: Option<Parallelism>,
 }
 
 impl Renderer {
-    /// Counts look-ups and measures time from now on; of a calculation by wavelength, those of the first pass.
-    pub fn measure(&mut self, clock: Clock) {
-        self.cache_mut().observe(clock);
+    /// Counts look-ups and measures time from now on; of a calculation by wavelength, those of the first pass. `wall` and
+    /// `own` are the time, and the processor time of the thread that asks.
+    pub fn measure(&mut self, wall: Clock, own: Clock) {
+        self.cache_mut().observe(wall);
+        if self.passes() == 1 {
+            self.cache_mut().time_steps(wall, own);
+        }
     }
 
     /// What it took since [`Renderer::measure`]; none if that was not called.
@@ -58,6 +64,7 @@ impl Renderer {
             rounds: statistics.rounds,
             filling: self.cache().filling(),
             observed,
+            parallelism: self.cache().steps().parallelism(),
         })
     }
 }

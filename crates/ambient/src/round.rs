@@ -1,0 +1,234 @@
+//! The hemispheres of a round: planned, sampled, completed by what their samples missed, and made into records.
+//!
+//! Each goes its own way in parallel as far as it can: samples, extra samples, record. Where samples miss the cache it
+//! waits; when all have stopped, what they miss is resolved together, in order, and they go on. At the deepest level,
+//! where nothing can be missed, and whenever the cache is warm, a round is a single parallel step.
+
+use crate::cache::Cache;
+use crate::fill::key;
+use crate::finish::{Cell, Outcome, finish, least_distance, once};
+use crate::gather::{Sampled, trace};
+use crate::hemisphere::Hemisphere;
+use crate::params::Limits;
+use crate::reuse::RENT;
+use crate::sampler::{Query, Sample, Sampler};
+use crate::steps::Chain;
+use crate::supersample::{allocate, budget};
+use ambit_base::{Colour, Rgb, Stream};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// Whether hemispheres are to become records.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kept {
+    Yes,
+    No,
+}
+
+/// An extra sample: its cell, and its number within the cell.
+type Extra = (usize, u32);
+
+/// How far a hemisphere has come.
+enum State<O> {
+    Done(Outcome),
+    Waiting(Box<Waiting<O>>),
+}
+
+/// A hemisphere whose last samples missed the cache.
+struct Waiting<O> {
+    plan: Hemisphere,
+    /// Nothing while it waits for its first samples; then its cells, and where the extra ones belong.
+    before: Option<(Vec<Cell>, Vec<Extra>)>,
+    sampled: Sampled<O>,
+}
+
+/// What all hemispheres of a round share.
+struct Round<'a, S: Sampler> {
+    cache: &'a Cache,
+    sampler: &'a S,
+    kept: Kept,
+    samples: &'a AtomicU64,
+    repaired: &'a AtomicU64,
+}
+
+impl Cache {
+    /// Samples the hemispheres of a round and makes their records.
+    pub(crate) fn hemispheres<S: Sampler>(
+        &mut self,
+        sampler: &S,
+        level: u8,
+        queries: &[Query<S::Origin>],
+        chosen: &[usize],
+        kept: Kept,
+    ) -> Vec<Outcome> {
+        let (samples, repaired) = (AtomicU64::new(0), AtomicU64::new(0));
+        let first = Round { cache: &*self, sampler, kept, samples: &samples, repaired: &repaired };
+        let mut states = self.steps.chains(chosen.len(), |k, chain| first.begin(&queries[chosen[k]], chain));
+        loop {
+            let mut waiting: Vec<usize> = Vec::new();
+            let mut misses = Vec::new();
+            for (k, state) in states.iter_mut().enumerate() {
+                if let State::Waiting(hemisphere) = state {
+                    waiting.push(k);
+                    misses.append(&mut hemisphere.sampled.misses);
+                }
+            }
+            if waiting.is_empty() {
+                break;
+            }
+            let mut answers = misses.iter().zip(self.resolve(sampler, &misses));
+            for &k in &waiting {
+                if let State::Waiting(hemisphere) = &mut states[k] {
+                    let Sampled { returned, owners, .. } = &mut hemisphere.sampled;
+                    for (owner, (miss, answer)) in owners.iter().zip(answers.by_ref()) {
+                        if let Some(sample) = &mut returned[*owner as usize] {
+                            sample.radiance += miss.coefficient * answer;
+                        }
+                    }
+                }
+            }
+            let next = Round { cache: &*self, sampler, kept, samples: &samples, repaired: &repaired };
+            let went = self.steps.chains(waiting.len(), |i, chain| {
+                let k = waiting[i];
+                match &states[k] {
+                    State::Waiting(hemisphere) => next.go_on(&queries[chosen[k]], hemisphere, chain),
+                    State::Done(outcome) => State::Done(*outcome),
+                }
+            });
+            for (k, state) in waiting.into_iter().zip(went) {
+                states[k] = state;
+            }
+        }
+        let level = usize::from(level);
+        if self.statistics.samples.len() <= level {
+            self.statistics.samples.resize(level + 1, 0);
+        }
+        self.statistics.samples[level] += samples.into_inner();
+        self.statistics.repaired += repaired.into_inner();
+        let outcome = |state| match state {
+            State::Done(outcome) => outcome,
+            State::Waiting(_) => Outcome::Nothing,
+        };
+        states.into_iter().map(outcome).collect()
+    }
+}
+
+impl<S: Sampler> Round<'_, S> {
+    /// Plans a hemisphere, takes its samples and goes on as far as it can.
+    fn begin(&self, query: &Query<S::Origin>, chain: &mut Chain) -> State<S::Origin> {
+        let params = &self.cache.params;
+        let weight = self.cache.limits.record_weight(query.level, query.weight);
+        let stream = Stream::new(0, key(query, params.seed));
+        let plan = match self.kept {
+            Kept::Yes => Hemisphere::new(params, Limits::share_of_samples(weight), 1.0, query.normal, stream, true),
+            Kept::No => Hemisphere::few(params, weight / RENT as f32, query.normal, stream),
+        };
+        // A cache without divisions ends before this.
+        let Some(plan) = plan else { return State::Done(Outcome::Nothing) };
+        let sampled = trace(self.cache, self.sampler, query, plan.len(), chain, |sample| {
+            plan.ray(plan.direction(sample), sample)
+        });
+        self.count(&sampled);
+        if sampled.misses.is_empty() {
+            self.extend(query, plan, &sampled.returned, chain)
+        } else {
+            State::Waiting(Waiting { plan, before: None, sampled }.into())
+        }
+    }
+
+    /// Goes on when all that it missed has been added to its samples.
+    fn go_on(&self, query: &Query<S::Origin>, waiting: &Waiting<S::Origin>, chain: &mut Chain) -> State<S::Origin> {
+        let Waiting { plan, before, sampled } = waiting;
+        match before {
+            None => self.extend(query, plan.clone(), &sampled.returned, chain),
+            Some((cells, extras)) => State::Done(self.refine(query, plan, cells.clone(), extras, &sampled.returned)),
+        }
+    }
+
+    /// Takes extra samples, if there are to be any, and ends.
+    fn extend(
+        &self,
+        query: &Query<S::Origin>,
+        plan: Hemisphere,
+        returned: &[Option<Sample>],
+        chain: &mut Chain,
+    ) -> State<S::Origin> {
+        let least = least_distance(&self.cache.limits);
+        let cells: Vec<Cell> = returned.iter().map(|r| cell(*r, least)).collect();
+        let extras = if self.kept == Kept::Yes { self.extras(query, &plan, &cells) } else { Vec::new() };
+        if extras.is_empty() {
+            return State::Done(self.finish(query, &plan, &cells));
+        }
+        let sampled = trace(self.cache, self.sampler, query, extras.len(), chain, |sample| {
+            let (cell, k) = extras[sample];
+            let direction = plan.frame().to_world(plan.extra_local(cell, k));
+            plan.ray(direction, plan.len() + sample)
+        });
+        self.count(&sampled);
+        if sampled.misses.is_empty() {
+            State::Done(self.refine(query, &plan, cells, &extras, &sampled.returned))
+        } else {
+            State::Waiting(Waiting { plan, before: Some((cells, extras)), sampled }.into())
+        }
+    }
+
+    /// Where a hemisphere takes extra samples: where cells differ from their neighbours.
+    fn extras(&self, query: &Query<S::Origin>, plan: &Hemisphere, cells: &[Cell]) -> Vec<Extra> {
+        let weight = self.cache.limits.record_weight(query.level, query.weight);
+        let budget = budget(self.cache.params.super_samples, Limits::share_of_samples(weight), plan.grid().side());
+        if budget == 0 || cells.iter().any(|c| c.distance <= 0.0) {
+            return Vec::new();
+        }
+        let brightness: Vec<f32> = cells.iter().map(|c| c.radiance.brightness()).collect();
+        let counts =
+            allocate([plan.grid().rows(), plan.grid().columns()], &brightness, budget, |cell| plan.share(cell));
+        counts.iter().enumerate().flat_map(|(cell, &m)| (0..m).map(move |k| (cell, k))).collect()
+    }
+
+    /// Takes extra samples into their cells' means, those of a cell follow each other, and ends.
+    fn refine(
+        &self,
+        query: &Query<S::Origin>,
+        plan: &Hemisphere,
+        mut cells: Vec<Cell>,
+        extras: &[Extra],
+        returned: &[Option<Sample>],
+    ) -> Outcome {
+        let least = least_distance(&self.cache.limits);
+        let mut returned = returned.iter();
+        for run in extras.chunk_by(|a, b| a.0 == b.0) {
+            let cell = &mut cells[run[0].0];
+            let (mut sum, mut count) = (cell.radiance, 1.0);
+            for sample in returned.by_ref().take(run.len()).flatten() {
+                sum += sample.radiance;
+                count += 1.0;
+                cell.nearness = cell.nearness.max(1.0 / sample.distance.max(least));
+            }
+            cell.radiance = sum / count;
+        }
+        self.finish(query, plan, &cells)
+    }
+
+    fn finish(&self, query: &Query<S::Origin>, plan: &Hemisphere, cells: &[Cell]) -> Outcome {
+        if self.kept == Kept::No {
+            return once(query, plan, cells);
+        }
+        let outcome = finish(&self.cache.limits, query, plan, cells);
+        if self.cache.quantised { outcome.quantised(query) } else { outcome }
+    }
+
+    fn count(&self, sampled: &Sampled<S::Origin>) {
+        self.samples.fetch_add(sampled.returned.len() as u64, Relaxed);
+        self.repaired.fetch_add(sampled.repaired, Relaxed);
+    }
+}
+
+/// The cell of a first sample.
+fn cell(returned: Option<Sample>, least: f64) -> Cell {
+    match returned {
+        Some(s) => {
+            let distance = s.distance.max(least);
+            Cell { radiance: s.radiance, distance, nearness: 1.0 / distance }
+        }
+        None => Cell { radiance: Rgb::ZERO, distance: 0.0, nearness: 0.0 },
+    }
+}
