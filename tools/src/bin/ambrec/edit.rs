@@ -18,7 +18,16 @@ pub(crate) fn merge(files: &[PathBuf], output: &Output, force: bool) -> Result<(
         let main = first.get_or_insert_with(|| (one.header.clone(), one.layout));
         if !force && !fingerprint_lines(&main.0).eq(fingerprint_lines(&one.header)) {
             let (a, b) = (files[0].display(), path.display());
-            return Err(format!("\"{b}\" is not of the scene and parameters of \"{a}\"; --force merges them").into());
+            // Radiance's files have none.
+            let unmarked =
+                [(&a, &main.0), (&b, &one.header)].into_iter().find(|(_, h)| fingerprint_lines(h).next().is_none());
+            return Err(match unmarked {
+                Some((name, _)) => {
+                    format!("\"{name}\" does not tell the scene and parameters it is of; --force merges it")
+                }
+                None => format!("\"{b}\" is not of the scene and parameters of \"{a}\"; --force merges them"),
+            }
+            .into());
         }
         read += one.records.len();
         all.extend(one.records.into_iter().filter(|r| known.insert(Layout::CURRENT.encode(r))));

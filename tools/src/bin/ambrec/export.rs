@@ -12,6 +12,8 @@ use std::path::PathBuf;
 const CORNERS: usize = 24;
 /// Ellipses stand off their surface by this fraction of their radius, so as to be seen.
 const LIFT: f64 = 1e-3;
+/// Where rings and ellipses begin, as a fraction of their radius: whole discs would hide the scene and each other.
+const INNER: f64 = 0.95;
 /// Colours of the ellipses of levels 0, 1, 2 …
 const COLOURS: [&str; 6] = [".9 .6 .1", ".2 .6 .9", ".4 .8 .2", ".7 .3 .8", ".9 .4 .5", ".5 .5 .5"];
 
@@ -29,7 +31,7 @@ enum Validity {
     None,
     /// Rings of the smaller radius.
     Disc,
-    /// Ellipses.
+    /// Ellipses, drawn as rings.
     Ellipse,
 }
 
@@ -91,16 +93,21 @@ impl Export {
                 Validity::Disc => {
                     let _ = writeln!(
                         text,
-                        "\nambrec_level{level} ring ambrec.{k}.valid\n0\n0\n8 {} {} 0 {r0}",
+                        "\nambrec_level{level} ring ambrec.{k}.valid\n0\n0\n8 {} {} {} {r0}",
                         point(centre),
-                        point(r.normal)
+                        point(r.normal),
+                        INNER * r0
                     );
                 }
                 Validity::Ellipse => {
-                    let _ = write!(text, "\nambrec_level{level} polygon ambrec.{k}.valid\n0\n0\n{}", 3 * CORNERS);
-                    for c in 0..CORNERS {
+                    let corners = 2 * (CORNERS + 1);
+                    let _ = write!(text, "\nambrec_level{level} polygon ambrec.{k}.valid\n0\n0\n{}", 3 * corners);
+                    // Once around, and back inside: a polygon with a hole.
+                    let outer = (0..=CORNERS).map(|c| (c, 1.0));
+                    for (c, part) in outer.chain((0..=CORNERS).rev().map(|c| (c, INNER))) {
                         let (sin, cos) = (TAU * c as f64 / CORNERS as f64).sin_cos();
-                        let _ = write!(text, "\n\t{}", point(centre + r.u * (r0 * cos) + r.v() * (r1 * sin)));
+                        let offset = r.u * (r0 * cos) + r.v() * (r1 * sin);
+                        let _ = write!(text, "\n\t{}", point(centre + offset * part));
                     }
                     text.push('\n');
                 }
