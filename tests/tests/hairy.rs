@@ -90,8 +90,8 @@ fn hairy_surfaces_take_fewer_samples_at_no_greater_error() {
     let (reference, none) = traced(&octree, "-aa 0 -ad 1024 -lw 1e-7");
     assert!(none == 0 && reference.len() == (SIDE * SIDE) as usize);
     let cached = "-aa .2 -ar 64 -ad 128";
-    let (plain, many) = traced(&octree, cached);
-    let (switched, fewer) = traced(&octree, &format!("{cached} --measured-reuse"));
+    let (plain, many) = traced(&octree, &format!("{cached} --measured-reuse off"));
+    let (switched, fewer) = traced(&octree, &format!("{cached} --measured-reuse on"));
     let (before, after) = (error(&plain, &reference), error(&switched, &reference));
     println!("{many} samples, error {before}; with the switch {fewer} samples, error {after}");
     assert!(before < 0.1, "the reference is one: {before}");
@@ -99,8 +99,13 @@ fn hairy_surfaces_take_fewer_samples_at_no_greater_error() {
     // An RMS of so many values is itself known to one part in √(2n).
     let known = 1.0 / f64::from(2 * SIDE * SIDE).sqrt();
     assert!(after <= before * (1.0 + known), "{after} instead of {before}");
-    let (other, same) = traced(&octree, &format!("{cached} --measured-reuse -n 5"));
+    let (other, same) = traced(&octree, &format!("{cached} --measured-reuse on -n 5"));
     assert!(other == switched && same == fewer, "-n 5 changes the answers");
+    // By itself, unless there is a file that others may want complete.
+    assert!(traced(&octree, cached) == (switched, fewer), "it is not on by default");
+    let file = scratch.path().join("a.amb");
+    let (_, complete) = traced(&octree, &format!("{cached} -af {}", file.display()));
+    assert!(10 * complete > 9 * many, "{complete} samples for a file, {many} without the switch");
 }
 
 /// The switch must leave alone what is well reused: a plain box.
@@ -118,7 +123,7 @@ fn plain_surfaces_are_hardly_touched() {
         let (before, _) = err.split_once(" hemisphere samples").expect("statistics were asked for");
         before.rsplit(' ').next().and_then(|n| n.parse::<f64>().ok()).expect("a number")
     };
-    let (without, with) = (run(""), run("--measured-reuse"));
+    let (without, with) = (run("--measured-reuse off"), run("--measured-reuse on"));
     println!("{without} samples, {with} with the switch");
     assert!((with / without - 1.0).abs() < 0.02, "{with} samples instead of {without}");
 }

@@ -40,7 +40,7 @@ pub struct Params {
     pub overlap: f32,
     /// Names the set of random numbers; two runs with equal seeds agree in every bit.
     pub seed: u64,
-    /// Systems beyond Radiance's, all off by default.
+    /// Systems beyond Radiance's, all off here.
     pub systems: Systems,
 }
 

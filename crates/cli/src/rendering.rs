@@ -17,6 +17,8 @@ pub struct Rendering {
     pub ambient_file: Option<String>,
     /// `--reuse`: what is done with records that the ambient file has; `None` leaves the file alone.
     pub reuse: Option<Reuse>,
+    /// `--measured-reuse`: on, off, or `None` for on unless there is an ambient file.
+    pub measured_reuse: Option<bool>,
     /// `--stats`: say in the end what the calculation took.
     pub statistics: bool,
     /// `--error`: the RMS error that settings are chosen for, relative to the mean, above 0 and up to 1; `None` takes the
@@ -67,6 +69,7 @@ impl Rendering {
             options,
             ambient_file: None,
             reuse: Some(Reuse::Auto),
+            measured_reuse: None,
             statistics: false,
             goal: None,
             functions: Vec::new(),
@@ -77,12 +80,13 @@ impl Rendering {
         }
     }
 
-    /// Settles on the bins of the spectrum, and refuses what can not be calculated.
+    /// Settles on what depends on several options, and refuses what can not be calculated.
     ///
     /// # Errors
     /// Names the option that asks for it.
     pub fn check(&mut self) -> Result<(), Failure> {
         self.options.spectrum = self.spectrum.settled()?;
+        self.options.ambient.systems.measured_reuse = self.measured_reuse.unwrap_or(self.ambient_file.is_none());
         if let Some(file) = self.ambient_file.as_ref().filter(|_| !self.options.spectrum.is_rgb()) {
             return Err(Failure::unsupported(&format!("an ambient file (-af {file}) with -cs above 3 is")));
         }

@@ -40,10 +40,19 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
         ),
         Row::new(
             "-measured-reuse",
-            Place::Bare(|s: &mut S| light(s).options.ambient.systems.measured_reuse = true),
+            Place::Word(|s: &mut S, how, _| {
+                light(s).measured_reuse = match how.as_str() {
+                    "auto" => None,
+                    "on" => Some(true),
+                    "off" => Some(false),
+                    _ => return Err(Failure::at("--measured-reuse")),
+                };
+                Ok(())
+            }),
             "where irradiance values of deeper bounces are hardly reused (leaves, blades, hair), use few samples and do not \
-             keep them",
-        ),
+             keep them: on, off, or auto (unless there is an ambient file, which others may want complete)",
+        )
+        .values("HOW"),
         Row::new(
             "-overlap",
             Place::Reals(1, |s: &mut S, weight| {
