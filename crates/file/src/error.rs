@@ -25,7 +25,7 @@ pub enum Error {
         source: io::Error,
     },
     /// The information header is missing or has no end.
-    #[error("{file}: bad header: {expected}")]
+    #[error("{file}: bad header: expected {expected}")]
     Header {
         /// The file as the user named it.
         file: String,
@@ -78,7 +78,7 @@ impl Error {
     pub fn problem(&self) -> String {
         match self {
             Self::Io { action, source, .. } => format!("{action}: {}", os_text(source)),
-            Self::Header { expected, .. } => format!("bad header: {expected}"),
+            Self::Header { expected, .. } => format!("bad header: expected {expected}"),
             Self::Format { found, expected, .. } => format!("FORMAT={found}, expected {expected}"),
             Self::Resolution { found, .. } => format!("bad resolution string '{found}'"),
             Self::Scanline { scanline, problem, .. } => format!("scanline {scanline}: {problem}"),

@@ -236,8 +236,11 @@ impl Entry<'_> {
                 return end;
             }
             let (values, files) = (records.len(), segments.len());
-            self.notify
-                .warn(&format!("merged {values} values of {files} segments into ambient file \"{}\"", self.name));
+            let plural = if files == 1 { "" } else { "s" };
+            self.notify.warn(&format!(
+                "merged {values} values of {files} segment{plural} into ambient file \"{}\"",
+                self.name
+            ));
         }
         remove_done(&segments);
         end + bytes.len() as u64
