@@ -4,7 +4,7 @@ use super::room::Room;
 use crate::fill::key;
 use crate::finish::{Cell, Outcome, finish};
 use crate::hemisphere::Hemisphere;
-use crate::params::Params;
+use crate::params::{Limits, Params};
 use crate::supersample::{allocate, budget};
 use crate::{Cache, Query};
 use ambit_base::{Colour, Rgb, Stream};
@@ -18,9 +18,9 @@ pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &m
         return value;
     }
     let params = *cache.params();
-    let weight = Params::record_weight(query.level, query.weight);
+    let share = Limits::share_of_samples(Params::record_weight(query.level, query.weight));
     let stream = Stream::new(0, key(query, params.seed));
-    let plan = Hemisphere::new(&params, weight, 1.0, query.normal, stream, true).expect("there are divisions");
+    let plan = Hemisphere::new(&params, share, 1.0, query.normal, stream, true).expect("there are divisions");
     let mut look = |cache: &mut Cache, direction, number| {
         let (mut sample, question) = room.look(query, direction, plan.child_weight(), plan.stream(number));
         samples[usize::from(query.level)] += 1;
@@ -36,7 +36,7 @@ pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &m
         })
         .collect();
     let brightness: Vec<f32> = cells.iter().map(|c| c.radiance.brightness()).collect();
-    let budget = budget(params.super_samples, weight, plan.grid().side());
+    let budget = budget(params.super_samples, share, plan.grid().side());
     let counts = allocate([plan.grid().rows(), plan.grid().columns()], &brightness, budget, |c| plan.share(c));
     let mut number = plan.len();
     for (cell, &count) in counts.iter().enumerate() {
