@@ -12,6 +12,7 @@ use ambit_file::{FileLock, Header, LockMode, os_text};
 use std::cell::Cell;
 use std::fs::File;
 use std::io::{ErrorKind, Seek, SeekFrom, Write};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -116,6 +117,8 @@ impl Entry<'_> {
         let _ = std::fs::remove_file(&aside);
         let full = [ErrorKind::StorageFull, ErrorKind::QuotaExceeded, ErrorKind::FileTooLarge];
         match linked {
+            // Of two processes of one name (in containers, say) one may have linked the other's file.
+            Ok(()) if !is_at(&file, self.path) => Ok(None),
             Ok(()) => self.new_file(Arc::new(file)).map(Some),
             Err(e) if e.kind() == ErrorKind::AlreadyExists => Ok(None),
             Err(e) if full.contains(&e.kind()) => Err(io_error("write", &self.name)(e)),
@@ -345,6 +348,12 @@ struct Existing {
     /// Where its last whole record ends.
     end: u64,
     locked: bool,
+}
+
+/// True if the path names this very file.
+fn is_at(file: &File, path: &Path) -> bool {
+    let place = |m: &std::fs::Metadata| (m.dev(), m.ino());
+    matches!((file.metadata(), std::fs::metadata(path)), (Ok(a), Ok(b)) if place(&a) == place(&b))
 }
 
 #[cfg(test)]
