@@ -8,7 +8,7 @@ use crate::prepare::Node;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{DVec3, Rgb};
-use ambit_scene::{Kind, ObjectId, VOID};
+use ambit_scene::{ObjectId, VOID};
 
 impl<O: Observer> Walk<'_, O> {
     /// Shades a ray at its hit; false if it goes on as if nothing were there.
@@ -99,10 +99,9 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
-    /// True for polygons and rings, whose hits share one normal.
+    /// True if the hits of the surface that was hit share one normal.
     pub(crate) fn is_flat(&self, ray: &Ray<'_>) -> bool {
-        let Some(hit) = &ray.hit else { return false };
-        hit.object != VOID && matches!(self.tracer.scene.objects.object(hit.object).kind, Kind::Polygon | Kind::Ring)
+        ray.hit.as_ref().is_some_and(|h| self.tracer.scene.is_flat(h.object))
     }
 
     /// True if the surface's immediate modifier is called `Phong`, which keeps textures from bending rays.

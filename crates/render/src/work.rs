@@ -9,8 +9,8 @@ pub(crate) struct Work {
     pub(crate) rays: u64,
     pub(crate) candidates: Vec<Candidate>,
     pub(crate) parts: Vec<Part>,
-    /// Sources whose samples a known obstacle blocks at the hit being lit.
-    pub(crate) known_blocked: Vec<SourceId>,
+    /// Candidates as they are ranked.
+    pub(crate) ranks: Vec<u64>,
     pub(crate) cal: ambit_cal::Scratch,
     /// Shadow tests since the last batch.
     pub(crate) tally: Tally,
@@ -24,7 +24,7 @@ impl Work {
             rays: 0,
             candidates: Vec::new(),
             parts: Vec::new(),
-            known_blocked: Vec::new(),
+            ranks: Vec::new(),
             cal: ambit_cal::Scratch::default(),
             tally: Tally::zero(sources),
             here: Tally::zero(sources).counts,
@@ -33,9 +33,7 @@ impl Work {
 
     /// Counts a shadow test of the hit being lit.
     pub(crate) fn note_test(&mut self, source: SourceId, clear: bool) {
-        let c = &mut self.here[source as usize];
-        c.tests += 1;
-        c.hits += u64::from(clear);
+        self.here[source as usize].note(clear);
     }
 
     /// Shadow tests of a source at the hit being lit.

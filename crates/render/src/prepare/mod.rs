@@ -13,9 +13,9 @@ pub(crate) use material::compile_material;
 pub(crate) use modifiers::{Modifiers, Node};
 
 use crate::patterns::Complaints;
-use crate::sources::{Emitter, Obstacles, Relay, Source, SourceId};
+use crate::sources::{Emitter, Lamp, Obstacles, Relay, Source, SourceId};
 use crate::{Error, Options, Selection};
-use ambit_scene::{ObjectId, Scene, VOID};
+use ambit_scene::{Kind, ObjectId, Scene, VOID};
 use ambit_trace::World;
 
 /// Everything that stays the same while light is traced.
@@ -27,6 +27,8 @@ pub(crate) struct Prepared {
     pub(crate) sources: Vec<Source>,
     /// What stands in the sources' light.
     pub(crate) obstacles: Obstacles,
+    /// The sources that are sampled, in scene order.
+    pub(crate) lamps: Vec<Lamp>,
     /// Sources at infinity, in scene order.
     pub(crate) distant: Vec<SourceId>,
     /// Mirrors and prisms that relay light.
@@ -68,6 +70,7 @@ impl Prepared {
             obstacles,
             distant: distant(&sources),
             sources,
+            lamps: Vec::new(),
             relays: Vec::new(),
             scatterers: Vec::new(),
             top_level,
@@ -79,7 +82,13 @@ impl Prepared {
         };
         crate::sources::add_virtual_sources(&mut prepared, options, environment);
         crate::sources::name_scatterers(&mut prepared, environment);
+        prepared.lamps = Lamp::all(&prepared.sources);
         Ok(prepared)
+    }
+
+    /// True for polygons and rings, whose hits share one normal.
+    pub(crate) fn is_flat(&self, surface: ObjectId) -> bool {
+        surface != VOID && matches!(self.objects.object(surface).kind, Kind::Polygon | Kind::Ring)
     }
 
     /// True if surfaces with this immediate modifier take part in the ambient calculation.

@@ -4,11 +4,11 @@
 
 use crate::observer::Observer;
 use crate::ray::{Kinds, Ray, transmittance};
+use crate::sources::lamp::View;
 use crate::sources::partition::{Part, parts};
-use crate::sources::{Emitter, Source, SourceId};
+use crate::sources::{Emitter, Lamp, Source, SourceId};
 use crate::walk::Walk;
 use ambit_base::{Colour, DVec3, EPSILON, FAR, Rgb, Stream, mix};
-use ambit_scene::VOID;
 use ambit_trace::Shadow;
 
 /// A sample that could light the point.
@@ -31,6 +31,30 @@ pub(crate) struct Sample {
     pub(super) solid_angle: f64,
 }
 
+impl Candidate {
+    /// None if nothing comes from there.
+    #[inline]
+    fn new(source: SourceId, direction: DVec3, coefficient: Rgb, emitted: Rgb) -> Option<Self> {
+        let potential = coefficient * emitted;
+        let brightness = potential.brightness();
+        (brightness > 0.0).then_some(Self { source, direction, coefficient, potential, brightness })
+    }
+}
+
+/// A number that sorts the brightest candidate first, of equals that of the least index.
+fn rank(index: usize, candidate: &Candidate) -> u64 {
+    // The bits of positive numbers are in their order.
+    u64::from(!candidate.brightness.to_bits()) << 32 | index as u64
+}
+
+fn index(rank: u64) -> usize {
+    rank as u32 as usize
+}
+
+fn brightness(rank: u64) -> f32 {
+    f32::from_bits(!((rank >> 32) as u32))
+}
+
 /// Above this jitter a round source that is not divided is sampled all over.
 const BENDING_JITTER: f64 = 0.7;
 
@@ -42,66 +66,97 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// As [`Walk::direct`], for responses that take a walk to be found, or that are 0 below the plane of a unit vector.
+    #[expect(clippy::inline_always, reason = "materials know much of their response: it is compiled for each")]
+    #[inline(always)]
     pub(crate) fn direct_with(
         &mut self,
         ray: &mut Ray<'_>,
         above: Option<DVec3>,
         mut coefficient: impl FnMut(&mut Self, DVec3, f64) -> Rgb,
     ) {
-        if self.tracer.scene.sources.is_empty() {
+        let scene = self.tracer.scene;
+        if scene.lamps.is_empty() {
             return;
         }
         let mut candidates = std::mem::take(&mut self.work.candidates);
-        let mut divided = std::mem::take(&mut self.work.parts);
         candidates.clear();
-        let scene = self.tracer.scene;
-        let options = self.tracer.options;
+        let direct = &self.tracer.options.direct;
         // The weight that counts is a shadow ray's.
-        let ratio = if options.direct.sampling > EPSILON {
-            options.direct.sampling / f64::from(ray.weight * ray.extinction_factor())
+        let ratio = if direct.sampling > EPSILON {
+            direct.sampling / f64::from(ray.weight * ray.extinction_factor())
         } else {
             f64::INFINITY
         };
-        let own = ray.hit.as_ref().filter(|_| self.is_flat(ray)).map_or(VOID, |h| h.object);
-        for (id, source) in scene.sources.iter().enumerate() {
-            if !source.sampled
-                || source.is_out_of_reach(ray.point)
-                || above.is_some_and(|n| source.is_below(ray.point, n, options.direct.jitter))
-            {
+        let still = direct.jitter <= EPSILON;
+        for lamp in &scene.lamps {
+            if above.is_some_and(|n| lamp.is_below(ray.point, n, direct.jitter)) {
                 continue;
             }
-            parts(source, ray.point, ratio, &mut divided);
-            let known = divided.len() == 1;
-            let bend = divided.len() > 1 || options.direct.jitter > BENDING_JITTER;
-            for (i, part) in divided.iter().enumerate() {
-                let stream = ray.stream.child(mix(id as u64, 0x5000 + i as u64));
-                let Some(sample) = self.sample(source, ray.point, part, bend, stream) else { continue };
-                let k = coefficient(self, sample.direction, sample.solid_angle);
-                if k.max_element() <= 0.0 {
-                    continue;
+            match if still { lamp.view(ray.point, ratio) } else { View::Parts } {
+                View::Dark => {}
+                View::Whole(sample) => {
+                    let k = coefficient(self, sample.direction, sample.solid_angle);
+                    if k.max_element() > 0.0 {
+                        self.consider(ray, lamp, &sample, k, &mut candidates);
+                    }
                 }
-                if known && scene.obstacles.block(id, source, &scene.world, own, ray.point, &sample) {
-                    self.work.note_test(id as SourceId, false);
-                    self.work.known_blocked.push(id as SourceId);
-                    continue;
-                }
-                let emitted = self.emitted(ray, id as SourceId, sample, bend);
-                let potential = k * emitted;
-                let brightness = potential.brightness();
-                if brightness > 0.0 {
-                    candidates.push(Candidate {
-                        source: id as SourceId,
-                        direction: sample.direction,
-                        coefficient: k,
-                        potential,
-                        brightness,
-                    });
-                }
+                View::Parts => self.consider_parts(ray, lamp.source, ratio, &mut coefficient, &mut candidates),
             }
         }
-        self.work.parts = divided;
-        self.test_shadows(ray, &mut candidates);
+        self.test_shadows(ray, &candidates);
         self.work.candidates = candidates;
+    }
+
+    /// Makes the sample of a whole lamp a candidate, unless an obstacle is known.
+    #[inline]
+    fn consider(&mut self, ray: &Ray<'_>, lamp: &Lamp, sample: &Sample, k: Rgb, candidates: &mut Vec<Candidate>) {
+        let scene = self.tracer.scene;
+        if scene.obstacles.block(lamp.source, scene, ray, sample) {
+            self.work.tally.counts[lamp.source as usize].note(false);
+            return;
+        }
+        let emitted = if lamp.uniform && ray.interior.extinction == Rgb::ZERO {
+            if lamp.encloses(sample.distance) { Rgb::ZERO } else { lamp.emission }
+        } else {
+            self.emitted(ray, lamp.source, *sample, false)
+        };
+        candidates.extend(Candidate::new(lamp.source, sample.direction, k, emitted));
+    }
+
+    /// Makes the samples of a source's parts candidates.
+    #[inline(never)]
+    fn consider_parts(
+        &mut self,
+        ray: &Ray<'_>,
+        id: SourceId,
+        ratio: f64,
+        coefficient: &mut impl FnMut(&mut Self, DVec3, f64) -> Rgb,
+        candidates: &mut Vec<Candidate>,
+    ) {
+        let scene = self.tracer.scene;
+        let source = &scene.sources[id as usize];
+        if source.is_out_of_reach(ray.point) {
+            return;
+        }
+        let mut divided = std::mem::take(&mut self.work.parts);
+        parts(source, ray.point, ratio, &mut divided);
+        let whole = divided.len() == 1;
+        let bend = !whole || self.tracer.options.direct.jitter > BENDING_JITTER;
+        for (i, part) in divided.iter().enumerate() {
+            let stream = ray.stream.child(mix(u64::from(id), 0x5000 + i as u64));
+            let Some(sample) = self.sample(source, ray.point, part, bend, stream) else { continue };
+            let k = coefficient(self, sample.direction, sample.solid_angle);
+            if k.max_element() <= 0.0 {
+                continue;
+            }
+            if whole && scene.obstacles.block(id, scene, ray, &sample) {
+                self.work.tally.counts[id as usize].note(false);
+                continue;
+            }
+            let emitted = self.emitted(ray, id, sample, bend);
+            candidates.extend(Candidate::new(id, sample.direction, k, emitted));
+        }
+        self.work.parts = divided;
     }
 
     /// One sample of a part, or None where the source does not face, reach or aim at the point.
@@ -182,24 +237,48 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// Tests shadows in order of potential, adds what arrives and estimates the rest.
-    fn test_shadows(&mut self, ray: &mut Ray<'_>, candidates: &mut [Candidate]) {
-        candidates.sort_unstable_by(|a, b| b.brightness.total_cmp(&a.brightness).then(a.source.cmp(&b.source)));
+    fn test_shadows(&mut self, ray: &mut Ray<'_>, candidates: &[Candidate]) {
+        match candidates {
+            [] => {}
+            // Two are always tested.
+            [one] => self.test_shadow(ray, one),
+            [a, b] => {
+                let (first, second) = if b.brightness > a.brightness { (b, a) } else { (a, b) };
+                self.test_shadow(ray, first);
+                self.test_shadow(ray, second);
+            }
+            many => self.test_ranked(ray, many),
+        }
+    }
+
+    fn test_shadow(&mut self, ray: &mut Ray<'_>, candidate: &Candidate) {
+        let arrived = self.shadow(ray, candidate);
+        self.work.tally.counts[candidate.source as usize].note(arrived.is_some());
+        if let Some(light) = arrived {
+            ray.value += light;
+        }
+    }
+
+    #[inline(never)]
+    fn test_ranked(&mut self, ray: &mut Ray<'_>, candidates: &[Candidate]) {
+        let mut ranks = std::mem::take(&mut self.work.ranks);
+        ranks.clear();
+        ranks.extend(candidates.iter().enumerate().map(|(i, c)| rank(i, c)));
+        ranks.sort_unstable();
         let count = candidates.len();
-        // Two are always tested.
-        let ahead =
-            if count > 2 { ((count as f64).powf(self.tracer.options.direct.certainty) + 0.5) as usize } else { count };
+        let ahead = ((count as f64).powf(self.tracer.options.direct.certainty) + 0.5) as usize;
         let threshold = (self.tracer.options.direct.threshold / f64::from(ray.weight)) as f32;
-        let mut rest: f32 = candidates.iter().map(|c| c.brightness).sum();
+        let mut rest: f32 = ranks.iter().map(|&r| brightness(r)).sum();
         // `window` is the sum over the samples looked ahead: T(i) − T(i+K).
-        let mut window: f32 = candidates.iter().take(ahead).map(|c| c.brightness).sum();
+        let mut window: f32 = ranks.iter().take(ahead).map(|&r| brightness(r)).sum();
         let mut tested = 0;
         let mut clear = 0u32;
         while tested < count {
             if tested >= 2 && window.min(rest) < threshold * ray.value.brightness() {
                 break;
             }
-            let candidate = candidates[tested];
-            let arrived = self.shadow(ray, &candidate);
+            let candidate = &candidates[index(ranks[tested])];
+            let arrived = self.shadow(ray, candidate);
             self.work.note_test(candidate.source, arrived.is_some());
             if let Some(light) = arrived {
                 clear += 1;
@@ -207,24 +286,30 @@ impl<O: Observer> Walk<'_, O> {
             }
             rest -= candidate.brightness;
             window -= candidate.brightness;
-            if let Some(next) = candidates.get(tested + ahead) {
-                window += next.brightness;
+            if let Some(&next) = ranks.get(tested + ahead) {
+                window += brightness(next);
             }
             tested += 1;
         }
+        let ranked = ranks.iter().map(|&r| &candidates[index(r)]);
         if tested < count {
-            self.estimate_rest(ray, candidates, tested, clear);
+            self.estimate_rest(ray, ranked.clone(), tested, clear);
         }
-        let mut blocked = std::mem::take(&mut self.work.known_blocked);
-        self.work.settle(candidates[..tested].iter().map(|c| c.source).chain(blocked.drain(..)));
-        self.work.known_blocked = blocked;
+        self.work.settle(ranked.take(tested).map(|c| c.source));
+        self.work.ranks = ranks;
     }
 
     /// Adds what the samples from `tested` on should bring, by the record of their sources.
-    fn estimate_rest(&self, ray: &mut Ray<'_>, candidates: &[Candidate], tested: usize, clear: u32) {
-        let expected: f64 = candidates[..tested].iter().map(|c| self.clear_ratio(c.source)).sum();
+    fn estimate_rest<'c>(
+        &self,
+        ray: &mut Ray<'_>,
+        ranked: impl Iterator<Item = &'c Candidate> + Clone,
+        tested: usize,
+        clear: u32,
+    ) {
+        let expected: f64 = ranked.clone().take(tested).map(|c| self.clear_ratio(c.source)).sum();
         let overall = if expected > EPSILON { f64::from(clear) / expected } else { 0.5 };
-        for candidate in &candidates[tested..] {
+        for candidate in ranked.skip(tested) {
             let share = (overall * self.clear_ratio(candidate.source)).min(1.0);
             ray.value += candidate.potential * share as f32;
         }
@@ -232,8 +317,12 @@ impl<O: Observer> Walk<'_, O> {
 
     /// Share of a source's shadow tests that came out clear: those of earlier batches and of this very hit.
     fn clear_ratio(&self, source: SourceId) -> f64 {
-        let (a, b) = (self.tracer.tally.counts[source as usize], self.work.tests_here(source));
-        (a.hits + b.hits) as f64 / (a.tests + b.tests) as f64
+        let here = self.work.tests_here(source);
+        if here.tests == 0 {
+            return self.tracer.tally.clear[source as usize];
+        }
+        let before = self.tracer.tally.counts[source as usize];
+        (before.hits + here.hits) as f64 / (before.tests + here.tests) as f64
     }
 
     /// Light that arrives from a candidate, or None if it is blocked.

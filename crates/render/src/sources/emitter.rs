@@ -96,6 +96,9 @@ pub(crate) enum Restriction {
 }
 
 impl Source {
+    /// Projected shares no larger than this are dropped.
+    pub(super) const LEAST_SHARE: f64 = 1e-4;
+
     /// The geometry of `shape` as a source, or the reason why it can't be one.
     pub(crate) fn from_shape(shape: Shape) -> Result<Geometry, &'static str> {
         match shape {
@@ -146,15 +149,6 @@ impl Source {
         self.reach < FAR && point.distance(self.centre) > self.reach + self.radius
     }
 
-    /// True if every sample of the given jitter lies below the plane through `point` with unit normal `n`.
-    pub(crate) fn is_below(&self, point: DVec3, n: DVec3, jitter: f64) -> bool {
-        let height = match self.emitter {
-            Emitter::Distant => self.centre.dot(n),
-            _ => (self.centre - point).dot(n),
-        };
-        height < -self.extent * jitter.max(1.0)
-    }
-
     /// The sample point for coordinates in [−1,1]³ along the axes; a direction for distant sources. `bend` maps the
     /// square of a round source to its disc and the cube of a sphere to its ball.
     #[expect(clippy::inline_always, reason = "it is asked for every sample, from the walks with and without observer")]
@@ -183,14 +177,12 @@ impl Source {
     /// Solid angle of a share `f` of the source whose sample lies in unit direction `l` at distance `d`;
     /// None if the sample is dropped.
     pub(crate) fn solid_angle(&self, l: DVec3, d: f64, f: f64) -> Option<f64> {
-        /// Projected shares no larger than this are dropped.
-        const LEAST: f64 = 1e-4;
         let factor = match self.emitter {
             Emitter::Distant => return Some(self.size),
             Emitter::Sphere(_) => f,
             Emitter::Polygon(_) | Emitter::Ring(_) => {
                 let cosine = -self.normal.dot(l) * f;
-                if cosine <= LEAST {
+                if cosine <= Self::LEAST_SHARE {
                     return None;
                 }
                 cosine
@@ -198,7 +190,7 @@ impl Source {
             Emitter::Cylinder(c) => {
                 let along = c.axis.dot(l);
                 let sine = (1.0 - along * along).max(0.0).sqrt() * f;
-                if sine <= LEAST {
+                if sine <= Self::LEAST_SHARE {
                     return None;
                 }
                 sine

@@ -3,6 +3,7 @@
 mod direct;
 mod distant;
 mod emitter;
+mod lamp;
 mod list;
 mod obstacles;
 mod partition;
@@ -13,6 +14,7 @@ mod virtual_sources;
 pub(crate) use direct::Candidate;
 pub(crate) use distant::sensor;
 pub(crate) use emitter::{Emitter, Source, Spot};
+pub(crate) use lamp::Lamp;
 pub(crate) use list::find_sources;
 pub(crate) use obstacles::Obstacles;
 pub(crate) use partition::Part;

@@ -5,9 +5,10 @@
 //! estimate for untested sources honest where many sources are blocked. The table is made once and never changes, so
 //! nothing depends on the order of rays.
 
+use super::SourceId;
 use super::direct::Sample;
 use super::emitter::{Emitter, Source};
-use crate::prepare::Modifiers;
+use crate::prepare::{Modifiers, Prepared};
 use ambit_base::{DVec3, EPSILON, FAR, Frame};
 use ambit_scene::{ObjectId, VOID};
 use ambit_trace::{Ray, World};
@@ -48,29 +49,20 @@ impl Obstacles {
         Self { tables: sources[..sources.len().min(MOST)].par_iter().map(table).collect() }
     }
 
-    /// True if the obstacle known for `point` blocks a sample of source `id`.
-    /// `own` is the surface that the point lies on if that is flat, so that it cannot shade itself, else [`VOID`].
-    pub(crate) fn block(
-        &self,
-        id: usize,
-        source: &Source,
-        world: &World,
-        own: ObjectId,
-        point: DVec3,
-        sample: &Sample,
-    ) -> bool {
-        let Sample { direction: l, distance, .. } = *sample;
-        let Some(table) = self.tables.get(id) else { return false };
-        let Some(obstacle) = table.at(source, point) else { return false };
-        if obstacle == own {
+    /// True if the obstacle known for the point of a hit blocks a sample of source `id`.
+    pub(crate) fn block(&self, id: SourceId, scene: &Prepared, ray: &crate::ray::Ray<'_>, sample: &Sample) -> bool {
+        let Some(table) = self.tables.get(id as usize) else { return false };
+        let source = &scene.sources[id as usize];
+        let Some(obstacle) = table.at(source, ray.point) else { return false };
+        // A flat surface cannot shade itself.
+        if ray.hit.as_ref().is_some_and(|h| h.object == obstacle) && scene.is_flat(obstacle) {
             return false;
         }
-        let ray = Ray { origin: point, direction: l, limit: FAR };
-        if world.bends(&ray) {
-            return false;
-        }
-        let reach = source.intersect(point, l).map_or(distance, |(t, _)| t);
-        world.distance(obstacle, &ray).is_some_and(|t| t < reach - EPSILON)
+        let Sample { direction, distance, .. } = *sample;
+        let way = Ray { origin: ray.point, direction, limit: FAR };
+        let Some(t) = scene.world.distance(obstacle, &way) else { return false };
+        let reach = source.intersect(ray.point, direction).map_or(distance, |(t, _)| t);
+        t < reach - EPSILON && !scene.world.bends(&way)
     }
 }
 
