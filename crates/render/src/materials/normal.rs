@@ -66,6 +66,11 @@ impl Normal {
         self.is_smooth() && self.transmission * self.transmitted_specular > EPSILON
     }
 
+    /// True if it has a diffuse part and nothing else.
+    fn is_matte(&self) -> bool {
+        self.kind != NormalKind::Trans && self.specular == 0.0
+    }
+
     fn is_smooth(&self) -> bool {
         self.roughness * self.roughness <= EPSILON
     }
@@ -108,11 +113,13 @@ impl<O: Observer> Walk<'_, O> {
         if ray.is_shadow() && m.kind != NormalKind::Trans {
             return true;
         }
+        if m.is_matte() {
+            return self.matte(ray, m.colour * finish.pattern, finish.tilt);
+        }
         let Some(facing) = self.visible_side(ray, finish.tilt) else { return false };
         let colour = m.colour * finish.pattern;
         let cosine = facing.cosine.max(LEAST_COSINE);
         let split = m.split(colour, cosine);
-        let flat = self.is_flat(ray) && !facing.textured;
 
         let through = self.through_direction(ray, &facing);
         if split.smooth && split.through_specular > EPSILON {
@@ -149,11 +156,25 @@ impl<O: Observer> Walk<'_, O> {
         if far > EPSILON {
             self.ambient(ray, colour * far as f32, -facing.normal);
         }
+        let flat = !split.smooth && !facing.textured && self.is_flat(ray);
         let jitter = self.tracer.options.direct.jitter;
-        let lobes = Lobes { split, colour, facing, cosine, through, flat, jitter, alpha2: m.roughness * m.roughness };
+        let alpha2 = m.roughness * m.roughness;
+        let lobes = Lobes { split: &split, colour, normal: facing.normal, cosine, through, flat, jitter, alpha2 };
         let d = ray.direction;
-        let above = (lobes.split.through <= EPSILON).then_some(lobes.facing.normal);
+        let above = (split.through <= EPSILON).then_some(facing.normal);
         self.direct_with(ray, above, |_, l, omega| lobes.coefficient(d, l, omega));
+        true
+    }
+
+    /// Plastic and metal without a specular part.
+    fn matte(&mut self, ray: &mut Ray<'_>, colour: Rgb, tilt: DVec3) -> bool {
+        let Some(facing) = self.visible_side(ray, tilt) else { return false };
+        let n = facing.normal;
+        self.ambient(ray, colour, n);
+        self.direct_with(ray, Some(n), |_, l, omega| {
+            let c = n.dot(l);
+            if c > EPSILON { colour * (c * omega / PI) as f32 } else { Rgb::ZERO }
+        });
         true
     }
 
@@ -198,10 +219,11 @@ impl<O: Observer> Walk<'_, O> {
 }
 
 /// The response of plastic, metal or trans to light from one direction.
-struct Lobes {
-    split: Split,
+struct Lobes<'a> {
+    split: &'a Split,
     colour: Rgb,
-    facing: Facing,
+    /// The shading normal.
+    normal: DVec3,
     /// Clamped cosine of the view.
     cosine: f64,
     through: DVec3,
@@ -210,10 +232,10 @@ struct Lobes {
     alpha2: f64,
 }
 
-impl Lobes {
+impl Lobes<'_> {
     fn coefficient(&self, d: DVec3, l: DVec3, omega: f64) -> Rgb {
-        let s = &self.split;
-        let n = self.facing.normal;
+        let s = self.split;
+        let n = self.normal;
         let lambda = n.dot(l);
         if (lambda < 0.0 && s.through <= EPSILON) || (lambda >= 0.0 && s.through >= 1.0 - EPSILON) {
             return Rgb::ZERO;

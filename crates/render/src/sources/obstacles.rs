@@ -21,6 +21,9 @@ const POSITIONS: usize = 40;
 /// Sources beyond these have no table.
 const MOST: usize = 200;
 
+/// Distances that differ by more than this factor need no exact comparison: polygons may be out of plane by a little.
+const SURELY: f64 = 0.99;
+
 /// The tables of all sources; empty where a source has none.
 #[derive(Debug, Default)]
 pub(crate) struct Obstacles {
@@ -61,8 +64,17 @@ impl Obstacles {
         let Sample { direction, distance, .. } = *sample;
         let way = Ray { origin: ray.point, direction, limit: FAR };
         let Some(t) = scene.world.distance(obstacle, &way) else { return false };
-        let reach = source.intersect(ray.point, direction).map_or(distance, |(t, _)| t);
-        t < reach - EPSILON && !scene.world.bends(&way)
+        // Mostly it is plain which comes first. A source's surface is nowhere farther from a sample than its samples are
+        // from each other.
+        let before = if t < SURELY * (distance - 2.0 * source.extent) {
+            true
+        } else if t * SURELY > distance {
+            false
+        } else {
+            let reach = source.intersect(ray.point, direction).map_or(distance, |(t, _)| t);
+            t < reach - EPSILON
+        };
+        before && !scene.world.bends(&way)
     }
 }
 
@@ -140,20 +152,20 @@ impl Beam {
 /// The cell of a direction on the cube of directions: face by the largest component, then a grid on the face.
 fn direction_cell(d: DVec3) -> usize {
     let a = d.abs();
-    let axis = if a.x >= a.y && a.x >= a.z {
-        0
+    let (face, main, u, v) = if a.x >= a.y && a.x >= a.z {
+        (0, d.x, d.y, d.z)
     } else if a.y >= a.z {
-        1
+        (2, d.y, d.z, d.x)
     } else {
-        2
+        (4, d.z, d.x, d.y)
     };
-    let main = d[axis];
     if main == 0.0 {
         return 0;
     }
-    let place = |x: f64| (((x / main.abs() + 1.0) * (0.5 * DIRECTIONS as f64)) as usize).min(DIRECTIONS - 1);
-    let face = 2 * axis + usize::from(main < 0.0);
-    (face * DIRECTIONS + place(d[(axis + 1) % 3])) * DIRECTIONS + place(d[(axis + 2) % 3])
+    let place = |x: f64| ((x / main.abs() + 1.0) * (0.5 * DIRECTIONS as f64)) as i32;
+    let place = |x: f64| place(x).clamp(0, DIRECTIONS as i32 - 1) as usize;
+    let face = face + usize::from(main < 0.0);
+    (face * DIRECTIONS + place(u)) * DIRECTIONS + place(v)
 }
 
 /// The unit direction through the middle of a cell.
