@@ -4,7 +4,7 @@
 
 use crate::observer::Observer;
 use crate::ray::{Kinds, Ray, transmittance};
-use crate::sources::lamp::View;
+use crate::sources::lamp::{Place, View};
 use crate::sources::partition::{Part, parts};
 use crate::sources::{Emitter, Lamp, Source, SourceId};
 use crate::walk::Walk;
@@ -87,12 +87,9 @@ impl<O: Observer> Walk<'_, O> {
         } else {
             f64::INFINITY
         };
-        let still = direct.jitter <= EPSILON;
+        let place = Place { point: ray.point, above, ratio, jitter: direct.jitter };
         for lamp in &scene.lamps {
-            if above.is_some_and(|n| lamp.is_below(ray.point, n, direct.jitter)) {
-                continue;
-            }
-            match if still { lamp.view(ray.point, ratio) } else { View::Parts } {
+            match lamp.view(&scene.sources, &place) {
                 View::Dark => {}
                 View::Whole(sample) => {
                     let k = coefficient(self, sample.direction, sample.solid_angle);
@@ -196,19 +193,8 @@ impl<O: Observer> Walk<'_, O> {
         if distance < FAR && distance > source.reach {
             return None;
         }
-        if !source.restrictions.iter().all(|r| r.admits(point, direction)) {
-            return None;
-        }
-        let mut solid_angle = source.solid_angle(direction, distance, part.share)?;
-        if let Some(spot) = &source.spot {
-            if -spot.aim.dot(direction) < spot.cosine {
-                return None;
-            }
-            if distance < FAR {
-                let r = distance / (distance + spot.focal);
-                solid_angle *= r * r;
-            }
-        }
+        let admitted = source.admitted(point, direction, distance)?;
+        let solid_angle = source.solid_angle(direction, distance, part.share)? * admitted;
         Some(Sample { direction, distance, solid_angle })
     }
 

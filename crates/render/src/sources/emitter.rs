@@ -3,7 +3,7 @@
 //! Solid angles are Radiance's: projected size over the squared distance to the *sample point*, so a sphere of radius
 //! r always subtends π r²/D², and large near sources are off in the same way.
 
-use crate::sources::SourceId;
+use super::SourceId;
 use ambit_base::{DVec3, EPSILON, FAR, Frame, Rgb};
 use ambit_scene::{Cone, ObjectId, Polygon, Ring, Shape, Sphere};
 use std::f64::consts::PI;
@@ -197,6 +197,20 @@ impl Source {
             }
         };
         Some(self.size * factor / (d * d))
+    }
+
+    /// What of its solid angle counts for a sample as `point` sees it; None where restrictions or the cone of a spotlight
+    /// keep its light away.
+    pub(super) fn admitted(&self, point: DVec3, l: DVec3, distance: f64) -> Option<f64> {
+        if !self.restrictions.iter().all(|r| r.admits(point, l)) {
+            return None;
+        }
+        let Some(spot) = &self.spot else { return Some(1.0) };
+        if -spot.aim.dot(l) < spot.cosine {
+            return None;
+        }
+        let r = if distance < FAR { distance / (distance + spot.focal) } else { 1.0 };
+        Some(r * r)
     }
 
     /// True for points inside a spherical source or on it, which see it from behind only.

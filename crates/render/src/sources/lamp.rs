@@ -12,6 +12,8 @@ pub(crate) struct Lamp {
     form: Form,
     /// It lies at infinity.
     distant: bool,
+    /// Restrictions or the cone of a spotlight keep its light from some points.
+    guarded: bool,
     /// It emits `emission` wherever a sample at its centre can see it from.
     pub(crate) uniform: bool,
     pub(crate) emission: Rgb,
@@ -35,11 +37,22 @@ enum Form {
     Flat,
     Ball,
     Distant,
-    /// By way of the source itself: cylinders, spotlights, images.
+    /// By way of the source itself.
     Other,
 }
 
-/// How a point sees a lamp that is sampled without jitter.
+/// What is lit, and how sources are sampled there.
+pub(crate) struct Place {
+    pub(crate) point: DVec3,
+    /// Nothing below the plane of this unit vector matters.
+    pub(crate) above: Option<DVec3>,
+    /// The least ratio of distance to width at which sources stay whole: `-ds` over the weight of the ray, or infinite.
+    pub(crate) ratio: f64,
+    /// `-dj`.
+    pub(crate) jitter: f64,
+}
+
+/// How a place sees a lamp.
 pub(crate) enum View {
     /// Not at all.
     Dark,
@@ -57,9 +70,7 @@ impl Lamp {
     }
 
     fn of(id: SourceId, source: &Source) -> Self {
-        let aimed = source.spot.is_some() || source.image.is_some() || !source.restrictions.is_empty();
         let form = match source.emitter {
-            _ if aimed => Form::Other,
             Emitter::Polygon(_) | Emitter::Ring(_) => Form::Flat,
             Emitter::Sphere(_) => Form::Ball,
             Emitter::Distant => Form::Distant,
@@ -71,7 +82,8 @@ impl Lamp {
             source: id,
             form,
             distant,
-            uniform: form != Form::Other && !source.patterned,
+            guarded: source.spot.is_some() || !source.restrictions.is_empty(),
+            uniform: !source.patterned && source.image.is_none(),
             emission: source.emission,
             centre: if distant { centre.normalize() } else { centre },
             normal: source.normal,
@@ -83,44 +95,50 @@ impl Lamp {
         }
     }
 
-    /// How `point` sees the lamp at the given ratio of distance to width (`-ds` over the weight of the ray).
-    #[inline]
-    pub(crate) fn view(&self, point: DVec3, ratio: f64) -> View {
-        match self.form {
-            Form::Other => return View::Parts,
-            Form::Distant => {
-                return View::Whole(Sample { direction: self.centre, distance: FAR, solid_angle: self.size });
-            }
-            Form::Flat | Form::Ball => {}
-        }
-        let to = self.centre - point;
-        if self.form == Form::Flat && self.normal.dot(to) >= -EPSILON {
+    /// How a place sees the lamp, one of these sources.
+    #[expect(
+        clippy::inline_always,
+        reason = "samples are not copied where it is compiled into the loop over all lamps"
+    )]
+    #[inline(always)]
+    pub(crate) fn view(&self, sources: &[Source], place: &Place) -> View {
+        let to = if self.distant { self.centre } else { self.centre - place.point };
+        if place.above.is_some_and(|n| to.dot(n) < -self.extent * place.jitter.max(1.0)) {
             return View::Dark;
         }
-        let distance = to.length();
-        if self.form == Form::Flat && ratio.is_finite() && distance * ratio < self.width {
+        if place.jitter > EPSILON || self.form == Form::Other {
             return View::Parts;
         }
-        if distance <= EPSILON || distance > self.reach {
-            return View::Dark;
-        }
-        let direction = to / distance;
-        let mut size = self.size;
-        if self.form == Form::Flat {
-            let cosine = -self.normal.dot(direction);
-            if cosine <= Source::LEAST_SHARE {
+        let (mut direction, mut distance, mut solid_angle) = (to, FAR, self.size);
+        if self.form != Form::Distant {
+            let flat = self.form == Form::Flat;
+            if flat && self.normal.dot(to) >= -EPSILON {
                 return View::Dark;
             }
-            size *= cosine;
+            distance = to.length();
+            if flat && distance * place.ratio < self.width && place.ratio.is_finite() {
+                return View::Parts;
+            }
+            if distance <= EPSILON || distance > self.reach {
+                return View::Dark;
+            }
+            direction = to / distance;
+            if flat {
+                let cosine = -self.normal.dot(direction);
+                if cosine <= Source::LEAST_SHARE {
+                    return View::Dark;
+                }
+                solid_angle *= cosine;
+            }
+            solid_angle /= distance * distance;
         }
-        View::Whole(Sample { direction, distance, solid_angle: size / (distance * distance) })
-    }
-
-    /// True if every sample of the given jitter lies below the plane through `point` with unit normal `n`.
-    #[inline]
-    pub(crate) fn is_below(&self, point: DVec3, n: DVec3, jitter: f64) -> bool {
-        let to = if self.distant { self.centre } else { self.centre - point };
-        to.dot(n) < -self.extent * jitter.max(1.0)
+        if self.guarded {
+            let Some(admitted) = sources[self.source as usize].admitted(place.point, direction, distance) else {
+                return View::Dark;
+            };
+            solid_angle *= admitted;
+        }
+        View::Whole(Sample { direction, distance, solid_angle })
     }
 
     /// True for points inside a spherical lamp or on it, at the distance of its centre: they see it from behind.

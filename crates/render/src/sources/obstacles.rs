@@ -162,8 +162,8 @@ fn direction_cell(d: DVec3) -> usize {
     if main == 0.0 {
         return 0;
     }
-    let place = |x: f64| ((x / main.abs() + 1.0) * (0.5 * DIRECTIONS as f64)) as i32;
-    let place = |x: f64| place(x).clamp(0, DIRECTIONS as i32 - 1) as usize;
+    let scale = 0.5 * DIRECTIONS as f64 / main.abs();
+    let place = |x: f64| ((x * scale + 0.5 * DIRECTIONS as f64) as i32).clamp(0, DIRECTIONS as i32 - 1) as usize;
     let face = face + usize::from(main < 0.0);
     (face * DIRECTIONS + place(u)) * DIRECTIONS + place(v)
 }
