@@ -117,7 +117,9 @@ impl<O: Observer> Walk<'_, O> {
         } else {
             self.emitted(ray, lamp.source, *sample, false)
         };
-        candidates.extend(Candidate::new(lamp.source, sample.direction, k, emitted));
+        if let Some(candidate) = Candidate::new(lamp.source, sample.direction, k, emitted) {
+            candidates.push(candidate);
+        }
     }
 
     /// Makes the samples of a source's parts candidates.

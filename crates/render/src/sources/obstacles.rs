@@ -16,6 +16,9 @@ use rayon::prelude::*;
 
 /// Cells along each edge of the cube of directions around a local source.
 const DIRECTIONS: usize = 20;
+/// No direction is farther than this from the middle of its cell: half the diagonal of one in the middle of a face, and
+/// a little. Flat sources light nothing behind them.
+const CELL: f64 = 1.5 / DIRECTIONS as f64;
 /// Cells along each side of a distant source's beam.
 const POSITIONS: usize = 40;
 /// Sources beyond these have no table.
@@ -52,9 +55,9 @@ impl Obstacles {
         Self { tables: sources[..sources.len().min(MOST)].par_iter().map(table).collect() }
     }
 
-    /// True if the obstacle known for the point of a hit blocks a sample of source `id`.
+    /// True if the obstacle that is known for the point of a hit blocks a sample of source `id`.
     pub(crate) fn block(&self, id: SourceId, scene: &Prepared, ray: &crate::ray::Ray<'_>, sample: &Sample) -> bool {
-        let Some(table) = self.tables.get(id as usize) else { return false };
+        let Some(table) = self.tables.get(id as usize).filter(|t| !t.cells.is_empty()) else { return false };
         let source = &scene.sources[id as usize];
         let Some(obstacle) = table.at(source, ray.point) else { return false };
         // A flat surface cannot shade itself.
@@ -111,7 +114,11 @@ impl Table {
                 .collect();
             return Self { cells, beam: Some(beam) };
         }
-        let cells = (0..6 * DIRECTIONS * DIRECTIONS).map(|i| first(source.centre, cell_direction(i))).collect();
+        let seen = |d: DVec3| d.dot(source.normal) > -CELL;
+        let cells = (0..6 * DIRECTIONS * DIRECTIONS)
+            .map(cell_direction)
+            .map(|d| if seen(d) { first(source.centre, d) } else { VOID })
+            .collect();
         Self { cells, beam: None }
     }
 
