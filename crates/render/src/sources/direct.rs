@@ -362,3 +362,21 @@ impl<O: Observer> Walk<'_, O> {
         (value.mean() > EPSILON as f32).then_some(candidate.coefficient * value)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranks_sort_by_brightness_and_then_by_place() {
+        let candidate = |x: f32| Candidate::new(0, DVec3::X, Rgb::splat(x), Rgb::ONE);
+        assert!(candidate(0.0).is_none() && candidate(f32::NAN).is_none());
+        let candidates: Vec<Candidate> =
+            [0.5, 3e-30, 7.0, 0.5, 1e30, f32::INFINITY].into_iter().filter_map(candidate).collect();
+        let mut ranks: Vec<u64> = candidates.iter().enumerate().map(|(i, c)| rank(i, c)).collect();
+        ranks.sort_unstable();
+        let order: Vec<usize> = ranks.iter().map(|&r| index(r)).collect();
+        assert_eq!(order, [5, 4, 2, 0, 3, 1]);
+        assert!(ranks.iter().all(|&r| brightness(r) == candidates[index(r)].brightness));
+    }
+}

@@ -146,3 +146,110 @@ impl Lamp {
         self.form == Form::Ball && distance <= self.radius + EPSILON
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sources::partition::parts;
+    use ambit_base::{Silent, Stream};
+    use ambit_scene::{NoCommands, Reader, Scene, Shape, VOID};
+
+    const SHAPES: &[u8] = b"
+        void polygon square 0 0 12  1 0 2  1 1 2  2 1 2  2 0 2
+        void polygon corner 0 0 9  0 0 2  0 1 2  1 0 2
+        void ring disc 0 0 8  .3 -.2 1.5  .1 .2 -1  0 .4
+        void sphere ball 0 0 4  .4 .5 .3  .2
+        void cylinder tube 0 0 7  0 0 2  1 .5 2  .05
+        void source sun 0 0 4  1 2 3  .5";
+
+    fn sources() -> Vec<Source> {
+        let mut scene = Scene::new();
+        Reader::new(&mut scene, &Silent, &mut NoCommands).read_bytes("shapes", SHAPES).unwrap();
+        let source = |id| {
+            let (shape, _) = Shape::from_object(&scene, id).unwrap();
+            let g = Source::from_shape(shape).unwrap();
+            Source {
+                object: id,
+                modifier: VOID,
+                emitter: g.emitter,
+                centre: g.centre,
+                axes: g.axes,
+                size: g.size,
+                radius: g.radius,
+                extent: 1.0,
+                normal: g.normal,
+                emission: Rgb::ONE,
+                patterned: false,
+                reach: FAR,
+                glow: false,
+                illum: false,
+                clear: false,
+                spot: None,
+                sampled: true,
+                image: None,
+                restrictions: Vec::new(),
+            }
+        };
+        scene.ids().map(source).collect()
+    }
+
+    /// What the source itself makes of being sampled whole and at its centre: None in the dark, or how it is divided.
+    fn longhand(source: &Source, point: DVec3, ratio: f64) -> Result<Option<(DVec3, f64)>, usize> {
+        let mut divided = Vec::new();
+        parts(source, point, ratio, &mut divided);
+        let [part] = divided.as_slice() else {
+            return if divided.is_empty() { Ok(None) } else { Err(divided.len()) };
+        };
+        let target = source.sample_point(part.centre, false);
+        let distant = matches!(source.emitter, Emitter::Distant);
+        let (to, distance) = if distant { (target, FAR) } else { (target - point, target.distance(point)) };
+        let direction = if distant { to.normalize() } else { to / distance };
+        Ok(source.solid_angle(direction, distance, part.share).map(|omega| (direction, omega)))
+    }
+
+    #[test]
+    fn the_short_way_samples_as_the_long_one() {
+        let sources = sources();
+        let lamps = Lamp::all(&sources);
+        assert_eq!(lamps.len(), 6);
+        let (mut dark, mut whole, mut divided) = (0, 0, 0);
+        for i in 0..2000 {
+            let point = DVec3::from(Stream::new(i, 1).three()) * 4.0 - 1.0;
+            for ratio in [f64::INFINITY, 4.0, 0.5] {
+                let place = Place { point, above: None, ratio, jitter: 0.0 };
+                for (lamp, source) in lamps.iter().zip(&sources) {
+                    let expected = longhand(source, point, ratio);
+                    match lamp.view(&sources, &place) {
+                        View::Dark => {
+                            dark += 1;
+                            assert_eq!(expected, Ok(None));
+                        }
+                        View::Whole(sample) => {
+                            whole += 1;
+                            assert_eq!(expected, Ok(Some((sample.direction, sample.solid_angle))));
+                        }
+                        View::Parts if matches!(source.emitter, Emitter::Cylinder(_)) => {}
+                        View::Parts => {
+                            divided += 1;
+                            assert!(expected.is_err_and(|n| n > 1));
+                        }
+                    }
+                }
+            }
+        }
+        assert!(dark > 500 && whole > 500 && divided > 500, "{dark} {whole} {divided}");
+    }
+
+    #[test]
+    fn nothing_below_the_plane_is_seen_and_jitter_asks_for_parts() {
+        let sources = sources();
+        for lamp in Lamp::all(&sources) {
+            let up = DVec3::new(1.0, 2.0, 3.0).normalize();
+            let at = |height: f64, jitter| Place { point: up * height, above: Some(up), ratio: 1.0, jitter };
+            if lamp.form != Form::Distant {
+                assert!(matches!(lamp.view(&sources, &at(10.0, 0.0)), View::Dark));
+            }
+            assert!(matches!(lamp.view(&sources, &at(-10.0, 1.0)), View::Parts));
+        }
+    }
+}

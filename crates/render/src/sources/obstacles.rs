@@ -215,4 +215,15 @@ mod tests {
             assert_eq!(direction_cell(cell_direction(cell) * 3.7), cell);
         }
     }
+
+    #[test]
+    fn cells_reach_no_farther_than_they_may() {
+        let mut widest = 0.0_f64;
+        for i in 0..100_000 {
+            let d = DVec3::from(ambit_base::Stream::new(i, 0).three()) * 2.0 - 1.0;
+            let Some(d) = d.try_normalize() else { continue };
+            widest = widest.max(d.distance(cell_direction(direction_cell(d))));
+        }
+        assert!(widest < CELL && widest > 0.9 * CELL, "{widest} {CELL}");
+    }
 }
