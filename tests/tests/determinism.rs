@@ -93,7 +93,7 @@ fn systems_of_our_own_do_not_depend_on_the_number_of_threads() {
     };
     let plain = usual("-ab 2");
     let ours =
-        ["--neighbor-clamping", "--spacing classical", "--actual-weights", "--unbounded-bounces", "--overlap .5"];
+        ["--neighbor-clamping", "--spacing classical", "--actual-weights", "--unbounded-bounces", "--overlap .9"];
     for line in ours {
         assert!(usual(line) != plain, "{line} changes nothing");
     }
