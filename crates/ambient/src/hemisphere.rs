@@ -40,7 +40,9 @@ pub struct Hemisphere {
     grid: Grid,
     stream: Stream,
     child_weight: f32,
-    /// Sample directions in the frame, one a cell.
+    /// Where the point lies in the first cell.
+    start: [f64; 2],
+    /// Sample directions in the frame, one a cell, if they are kept.
     locals: Vec<DVec3>,
 }
 
@@ -75,7 +77,8 @@ impl Hemisphere {
         let classical = caching && params.systems.spacing == Spacing::Classical;
         let grid = if classical { Grid::polar(divisions * weight) } else { Grid::Disk { side } };
         let child_weight = if caching { ASSUMED_REFLECTANCE as f32 } else { coefficient / (side * side) as f32 };
-        Some(Self::in_cells(grid, child_weight, normal, stream))
+        let plan = Self::in_cells(grid, child_weight, normal, stream);
+        Some(if caching { plan.keep_directions() } else { plan })
     }
 
     /// Plans a hemisphere of at most `-ad` × `weight` samples, one at least, whose value is not kept. Its rays weigh what
@@ -90,19 +93,20 @@ impl Hemisphere {
 
     fn in_cells(grid: Grid, child_weight: f32, normal: DVec3, stream: Stream) -> Self {
         let frame = Frame::turned(normal, TAU * stream.child(tag::TURN).one());
-        let start = stream.child(tag::CELL).two();
+        Self { frame, grid, stream, child_weight, start: stream.child(tag::CELL).two(), locals: Vec::new() }
+    }
+
+    /// Keeps the sample directions at hand, where each is asked for several times.
+    fn keep_directions(mut self) -> Self {
+        self.locals = (0..self.len()).map(|cell| self.at(cell)).collect();
+        self
+    }
+
+    /// The sample direction of a cell in the frame.
+    fn at(&self, cell: usize) -> DVec3 {
+        let (row, column) = (cell / self.grid.columns(), cell % self.grid.columns());
         let moved = |start: f64, by: usize| (start + by as f64 * GOLDEN).fract();
-        let across: Vec<f64> = (0..grid.columns()).map(|column| moved(start[0], column)).collect();
-        let mut locals = Vec::with_capacity(grid.len());
-        for row in 0..grid.rows() {
-            let along = moved(start[1], row);
-            locals.extend(
-                (0..)
-                    .zip(&across)
-                    .map(|(column, &across)| raise(grid.point(row * grid.columns() + column, [across, along]))),
-            );
-        }
-        Self { frame, grid, stream, child_weight, locals }
+        raise(self.grid.point(cell, [moved(self.start[0], column), moved(self.start[1], row)]))
     }
 
     /// How it is divided.
@@ -129,7 +133,7 @@ impl Hemisphere {
     /// The sample direction of a cell in the frame (x, y tangential, z along the normal, positive), unit length. Cell
     /// `row · side + column`.
     pub(crate) fn local(&self, cell: usize) -> DVec3 {
-        self.locals[cell]
+        self.locals.get(cell).copied().unwrap_or_else(|| self.at(cell))
     }
 
     /// The sample direction of a cell, unit length, world coordinates.
