@@ -351,7 +351,7 @@ struct Existing {
 }
 
 /// True if the path names this very file.
-fn is_at(file: &File, path: &Path) -> bool {
+pub(super) fn is_at(file: &File, path: &Path) -> bool {
     let place = |m: &std::fs::Metadata| (m.dev(), m.ino());
     matches!((file.metadata(), std::fs::metadata(path)), (Ok(a), Ok(b)) if place(&a) == place(&b))
 }

@@ -289,6 +289,21 @@ fn write_in_a_child() {
 }
 
 #[test]
+fn a_file_that_another_has_taken_the_place_of_is_noticed() {
+    let folder = Folder::new();
+    let path = folder.file();
+    let own = fs::File::create(&path).unwrap();
+    assert!(super::open::is_at(&own, &path));
+    // A second file is made before the first one's place is free, so that they differ.
+    let other = path.with_extension("other");
+    fs::write(&other, b"").unwrap();
+    fs::rename(&other, &path).unwrap();
+    assert!(!super::open::is_at(&own, &path));
+    fs::remove_file(&path).unwrap();
+    assert!(!super::open::is_at(&own, &path));
+}
+
+#[test]
 fn processes_share_a_file_without_losing_records() {
     let folder = Folder::new();
     let children: Vec<_> = (0..4)
