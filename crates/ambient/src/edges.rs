@@ -23,26 +23,45 @@ const LANES: usize = 8;
 const NODES: [(f32, f32); 3] = [(0.112_701_66, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_35, 5.0 / 18.0)];
 
 /// Sample points of a hemisphere by direction in its frame and reciprocal distance (1/scene unit), in columns.
+///
+/// `slope` is w of the plane that the point lies in: along any direction d, the plane's reciprocal distance is w·d.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Points {
     x: Vec<f32>,
     y: Vec<f32>,
     z: Vec<f32>,
     near: Vec<f32>,
+    slope: [Vec<f32>; 3],
     len: usize,
 }
 
+/// Planes seen at a smaller cosine than this are taken for unknown: their slope would be mostly rounding.
+const EDGE_ON: f64 = 1e-5;
+/// Points count as lying in each other's planes up to this part of the planes' slopes, which is what rounding of
+/// directions does.
+const SLACK: f32 = 1e-5;
+
 impl Points {
-    /// Points from unit directions and reciprocal distances.
-    pub(crate) fn new(points: impl ExactSizeIterator<Item = (DVec3, f32)>) -> Self {
+    /// Points from unit directions, reciprocal distances and normals of the surfaces they lie on (0: unknown, which counts as
+    /// facing the origin).
+    pub(crate) fn new(points: impl ExactSizeIterator<Item = (DVec3, f32, DVec3)>) -> Self {
         let len = points.len();
         // What lies behind the last point is read with it, for edges of no weight.
         let column = || Vec::with_capacity(len + LANES);
-        let mut columns = Self { x: column(), y: column(), z: column(), near: column(), len };
-        for (d, near) in points {
+        let slope = [column(), column(), column()];
+        let mut columns = Self { x: column(), y: column(), z: column(), near: column(), slope, len };
+        for (d, near, normal) in points {
             columns.push(d.x as f32, d.y as f32, d.z as f32, near);
+            let cosine = normal.dot(d);
+            let slope = if cosine.abs() < EDGE_ON { d } else { normal / cosine } * f64::from(near);
+            for (column, w) in columns.slope.iter_mut().zip(slope.to_array()) {
+                column.push(w as f32);
+            }
         }
         columns.pad();
+        for column in &mut columns.slope {
+            column.resize(len + LANES, 0.0);
+        }
         columns
     }
 
@@ -78,6 +97,28 @@ impl Points {
     /// Reciprocal distances.
     pub(crate) fn nearness(&self) -> &[f32] {
         &self.near[..self.len]
+    }
+
+    /// Of the points `from`, `from + 1` … and `to`, `to + 1` …, which pairs may lie on connected surfaces: on one plane, or
+    /// on two planes that meet between them, as in corners. Else one surface ends between them in front of the other.
+    pub(crate) fn joined(&self, from: usize, to: usize, count: usize) -> Vec<bool> {
+        let mut joined = Vec::with_capacity(count.next_multiple_of(LANES));
+        for k in (0..count).step_by(LANES) {
+            let ([ax, ay, az, near_a], [bx, by, bz, near_b]) = (self.eight(from + k), self.eight(to + k));
+            let ([px, py, pz], [qx, qy, qz]) = (self.slopes(from + k), self.slopes(to + k));
+            // How much nearer than the other's plane each is; one in front, one behind: the planes meet between.
+            let a = near_a - (qx * ax + qy * ay + qz * az);
+            let b = px * bx + py * by + pz * bz - near_b;
+            let size = px * px + py * py + pz * pz + qx * qx + qy * qy + qz * qz;
+            let meet = (a * b - size * (SLACK * SLACK)).to_array();
+            joined.extend(meet.map(|x| x <= 0.0));
+        }
+        joined.truncate(count);
+        joined
+    }
+
+    fn slopes(&self, k: usize) -> [f32x8; 3] {
+        [0, 1, 2].map(|axis| load(&self.slope[axis], k))
     }
 
     fn eight(&self, k: usize) -> [f32x8; 4] {
@@ -205,7 +246,8 @@ mod tests {
                 let (r, s) = (scale * 10f64.powf(2.0 * p - 1.0), scale * 10f64.powf(2.0 * q - 1.0));
                 let mut exact = Derivatives::default();
                 exact.add_edge(a * r, b * s, w);
-                let points = Points::new([(a, (1.0 / r) as f32), (b, (1.0 / s) as f32)].into_iter());
+                let points =
+                    Points::new([(a, (1.0 / r) as f32, DVec3::ZERO), (b, (1.0 / s) as f32, DVec3::ZERO)].into_iter());
                 let mut weights = Weights::new(1);
                 weights.all()[0] = w as f32;
                 let mut sum = Derivatives::default();
@@ -220,9 +262,47 @@ mod tests {
         }
     }
 
+    /// Two points in a room by their directions, with the distance and the normal of the nearest plane n·p = h.
+    fn pair_joined(planes: &[(DVec3, f64)], a: DVec3, b: DVec3) -> bool {
+        let meet = |d: DVec3| {
+            let ahead = planes.iter().filter(|(n, _)| n.dot(d) > 0.0);
+            let nearest = ahead.map(|(n, h)| (h / n.dot(d), *n)).min_by(|x, y| x.0.total_cmp(&y.0));
+            let (t, n) = nearest.expect("a plane ahead");
+            (d, (1.0 / t) as f32, n)
+        };
+        let points = Points::new([meet(a.normalize()), meet(b.normalize())].into_iter());
+        points.joined(0, 1, 1)[0]
+    }
+
+    #[test]
+    fn points_on_one_plane_and_across_corners_are_joined() {
+        for scale in [1e-4, 1.0, 1e5] {
+            // A wall 0.1 away and a ceiling 2 above.
+            let room = [(DVec3::X, 0.1 * scale), (DVec3::Z, 2.0 * scale)];
+            for key in 0..1000 {
+                let [a, b] = pair(key, 0.3);
+                let inside = |d: DVec3| d.x > 0.0 && d.z > 0.0;
+                if inside(a) && inside(b) {
+                    assert!(pair_joined(&room, a, b), "{key}: {a} and {b} at {scale}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_surface_in_front_of_another_is_not_joined_with_it() {
+        for scale in [1e-4f64, 1.0, 1e5] {
+            let near = (DVec3::new(0.3, 0.1, 1.0).normalize(), (0.5 * scale).recip() as f32, DVec3::Z);
+            let far = (DVec3::new(0.2, 0.1, 1.0).normalize(), (2.0 * scale).recip() as f32, DVec3::Z);
+            let sky = (DVec3::new(0.1, 0.1, 1.0).normalize(), 1e-12, DVec3::ZERO);
+            let points = Points::new([near, far, sky, sky].into_iter());
+            assert_eq!(points.joined(0, 1, 3), [false, false, true], "at {scale}");
+        }
+    }
+
     #[test]
     fn coincident_points_add_nothing() {
-        let points = Points::new([(DVec3::Z, 2.0); 9].into_iter());
+        let points = Points::new([(DVec3::Z, 2.0, DVec3::ZERO); 9].into_iter());
         let mut weights = Weights::new(8);
         weights.all().fill(1.0);
         let mut sum = Derivatives::default();

@@ -13,7 +13,7 @@ use crate::radii::{Ellipse, circle, ellipse, split_sphere, turned};
 use crate::record::Record;
 use crate::sampler::Query;
 use crate::tilt::Tilt;
-use ambit_base::{Colour, DVec3, EPSILON, Rgb};
+use ambit_base::{Colour, DVec3, EPSILON, Rgb, Vec3};
 
 /// Share of the black floor in relative radiances, which keeps black occluders visible to the Hessian.
 const FLOOR: f64 = 0.01;
@@ -36,6 +36,8 @@ pub(crate) struct Cell {
     pub(crate) distance: f64,
     /// Reciprocal distance of the closest sample.
     pub(crate) nearness: f64,
+    /// Normal where the first sample ended; 0 if unknown.
+    pub(crate) normal: Vec3,
 }
 
 /// What a hemisphere came to.
@@ -133,7 +135,10 @@ fn curved(limits: &Limits, weight: f32, plan: &Hemisphere, cells: &[Cell], mean:
     let n = plan.grid().side();
     let far = 10.0 * limits.edge + 1000.0;
     let numbered = cells.iter().enumerate();
-    let points = Points::new(numbered.map(|(c, cell)| (plan.local(c), cell.distance.min(far).recip() as f32)));
+    let points = Points::new(numbered.map(|(c, cell)| {
+        let normal = plan.frame().to_local(cell.normal.as_dvec3());
+        (plan.local(c), cell.distance.min(far).recip() as f32, normal)
+    }));
     let (derivatives, rotation, least) = if let Some(mean) = mean {
         let scale = (1.0 - FLOOR) as f32;
         let values: Vec<f32> = cells.iter().map(|c| scale * (c.radiance.mean() / mean - 1.0)).collect();

@@ -14,7 +14,7 @@ use crate::reuse::RENT;
 use crate::sampler::{Query, Sample, Sampler};
 use crate::steps::Chain;
 use crate::supersample::{allocate, budget};
-use ambit_base::{Colour, Rgb, Stream};
+use ambit_base::{Colour, Rgb, Stream, Vec3};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Whether hemispheres are to become records.
@@ -227,8 +227,8 @@ fn cell(returned: Option<Sample>, least: f64) -> Cell {
     match returned {
         Some(s) => {
             let distance = s.distance.max(least);
-            Cell { radiance: s.radiance, distance, nearness: 1.0 / distance }
+            Cell { radiance: s.radiance, distance, nearness: 1.0 / distance, normal: s.normal }
         }
-        None => Cell { radiance: Rgb::ZERO, distance: 0.0, nearness: 0.0 },
+        None => Cell { radiance: Rgb::ZERO, distance: 0.0, nearness: 0.0, normal: Vec3::ZERO },
     }
 }

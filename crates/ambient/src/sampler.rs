@@ -1,7 +1,7 @@
 //! What the cache asks of its user (radiance along a direction) and what it is asked.
 
 use crate::Cache;
-use ambit_base::{DVec3, Rgb, Stream};
+use ambit_base::{DVec3, Rgb, Stream, Vec3};
 
 /// A question for the diffuse indirect light at a point.
 ///
@@ -38,6 +38,8 @@ pub struct Sample {
     pub radiance: Rgb,
     /// Effective distance to what sends it, scene units; [`ambit_base::FAR`] if nothing was hit.
     pub distance: f64,
+    /// The geometric normal of the surface that sends it, either side, unit length; 0 if that is none or unknown.
+    pub normal: Vec3,
 }
 
 /// A hemisphere ray to trace.

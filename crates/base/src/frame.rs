@@ -41,4 +41,10 @@ impl Frame {
     pub fn to_world(&self, p: DVec3) -> DVec3 {
         self.u * p.x + self.v * p.y + self.n * p.z
     }
+
+    /// From the coordinates `u`, `v`, `n` are given in to frame coordinates.
+    #[inline]
+    pub fn to_local(&self, p: DVec3) -> DVec3 {
+        DVec3::new(p.dot(self.u), p.dot(self.v), p.dot(self.n))
+    }
 }

@@ -7,7 +7,7 @@ use crate::sources::Tally;
 use crate::walk::Walk;
 use crate::work::Work;
 use ambit_ambient::{Cache, Miss, Query, Sample, SampleRay, Sampler};
-use ambit_base::{DVec3, EPSILON, FAR, Rgb, Stream};
+use ambit_base::{DVec3, EPSILON, FAR, Rgb, Stream, Vec3};
 use ambit_trace::Opacity;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -97,14 +97,20 @@ impl Tracer<'_> {
         match ray.fate(true, &self.options.limits) {
             Fate::Alive => {}
             // A path that Russian roulette ends brings nothing, and that is its fair share.
-            Fate::Unlucky => return Some(Sample { radiance: Rgb::ZERO, distance: FAR }),
+            Fate::Unlucky => return Some(Sample { radiance: Rgb::ZERO, distance: FAR, normal: Vec3::ZERO }),
             Fate::Refused => return None,
         }
         let first = misses.len();
         let mut walk = Walk { tracer: self, cache, work, misses, observer: () };
         walk.evaluate(&mut ray);
         let rest = walk.endless(first);
-        Some(Sample { radiance: ray.value * ray.coefficient + rest, distance: ray.effective_length() })
+        let distance = ray.effective_length();
+        // What is seen through glass or in a mirror lies in no plane that is known here.
+        let normal = match ray.hit {
+            Some(hit) if distance == hit.distance => hit.normal.as_vec3(),
+            _ => Vec3::ZERO,
+        };
+        Some(Sample { radiance: ray.value * ray.coefficient + rest, distance, normal })
     }
 
     /// This thread's scratch memory. The lock is never waited for: each thread of the pool has its own, and a thread

@@ -139,8 +139,10 @@ impl Room {
         stream: Stream,
     ) -> (Sample, Option<Miss<()>>) {
         match self.hit(query.position, direction) {
-            None => (Sample { radiance: Rgb::ZERO, distance: FAR }, None),
-            Some(h) if h.lamp => (Sample { radiance: Rgb::ZERO, distance: h.distance }, None),
+            None => (Sample { radiance: Rgb::ZERO, distance: FAR, normal: Vec3::ZERO }, None),
+            Some(h) if h.lamp => {
+                (Sample { radiance: Rgb::ZERO, distance: h.distance, normal: h.normal.as_vec3() }, None)
+            }
             Some(h) => {
                 let radiance = h.reflectance * self.direct(h.position, h.normal, stream);
                 let next = Query {
@@ -151,7 +153,8 @@ impl Room {
                     level: query.level + 1,
                     origin: (),
                 };
-                (Sample { radiance, distance: h.distance }, Some(Miss { coefficient: h.reflectance, query: next }))
+                let sample = Sample { radiance, distance: h.distance, normal: h.normal.as_vec3() };
+                (sample, Some(Miss { coefficient: h.reflectance, query: next }))
             }
         }
     }

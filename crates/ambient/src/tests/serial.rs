@@ -32,7 +32,7 @@ pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &m
     let mut cells: Vec<Cell> = (0..plan.len())
         .map(|k| {
             let s = look(cache, plan.direction(k), k);
-            Cell { radiance: s.radiance, distance: s.distance, nearness: 1.0 / s.distance }
+            Cell { radiance: s.radiance, distance: s.distance, nearness: 1.0 / s.distance, normal: s.normal }
         })
         .collect();
     let brightness: Vec<f32> = cells.iter().map(|c| c.radiance.brightness()).collect();

@@ -1,7 +1,7 @@
 //! Surroundings given as functions, and the records made in them.
 
 use ambit_ambient::{Answer, Cache, Miss, Params, Query, Record, Sample, SampleRay, Sampler};
-use ambit_base::{DVec3, FAR, Rgb};
+use ambit_base::{DVec3, FAR, Rgb, Vec3};
 
 /// Surroundings as a function from a ray to radiance and distance.
 pub(crate) struct Around<F>(pub(crate) F);
@@ -25,7 +25,7 @@ impl<F: Fn(DVec3, DVec3) -> (f32, f64) + Sync> Sampler for Around<F> {
     ) -> Option<Sample> {
         assert_eq!(weight, 0.5);
         let (radiance, distance) = (self.0)(query.position, direction);
-        Some(Sample { radiance: Rgb::splat(radiance), distance })
+        Some(Sample { radiance: Rgb::splat(radiance), distance, normal: Vec3::ZERO })
     }
 
     fn occluded(&self, _: &Query<()>, _: DVec3, _: DVec3) -> bool {
