@@ -118,10 +118,6 @@ impl<'a> Scene<'a> {
     pub(crate) fn close(mut self) -> Result<(), Stop> {
         let result = self.renderer.finish(&self.session.messages).map_err(failed);
         if let Some(report) = self.renderer.report() {
-            if self.renderer.passes() > 1 {
-                let passes = self.renderer.passes();
-                self.session.messages.print(format_args!("statistics - the first of {passes} passes, by wavelength:"));
-            }
             for line in crate::statistics::lines(&report, self.session.meter.seconds()) {
                 self.session.messages.print(format_args!("statistics - {line}"));
             }
@@ -215,7 +211,7 @@ fn ambient_header(rendering: &Rendering, octree: &str) -> Vec<String> {
     };
     let line = format!(
         "rpict -av {} {} {} -aw {} -ab {} -aa {} -ad {} -as {} -ar {}{mist}{}{} -dr {} -ds {} -dt {} -dc {} -ss {} -st {} \
-         -lr {} -lw {} -cw {} {} -cs 3 {octree}",
+         -lr {} -lw {} -cw {} {} -cs {} {octree}",
         f(a.value.x),
         f(a.value.y),
         f(a.value.z),
@@ -236,7 +232,8 @@ fn ambient_header(rendering: &Rendering, octree: &str) -> Vec<String> {
         o.limits.reflections,
         g(o.limits.weight),
         g(shortest),
-        g(longest)
+        g(longest),
+        o.spectrum.bins()
     );
     let [date, gmt] = Session::time_lines();
     vec![line, format!("SOFTWARE= {}", ambit_cli::VERSION), date, gmt]

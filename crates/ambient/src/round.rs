@@ -6,7 +6,7 @@
 
 use crate::cache::Cache;
 use crate::fill::key;
-use crate::finish::{Cell, Outcome, finish, least_distance, once};
+use crate::finish::{Cell, Outcome, finish, least_distance, mean, once};
 use crate::gather::{Sampled, trace};
 use crate::hemisphere::Hemisphere;
 use crate::params::Limits;
@@ -15,6 +15,8 @@ use crate::sampler::{Query, Sample, Sampler};
 use crate::steps::Chain;
 use crate::supersample::{allocate, budget};
 use ambit_base::{Colour, Rgb, Stream};
+use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Whether hemispheres are to become records.
@@ -36,7 +38,7 @@ enum State<O> {
 /// A hemisphere whose last samples missed the cache.
 struct Waiting<O> {
     plan: Hemisphere,
-    /// Nothing while it waits for its first samples; then its cells, and where the extra ones belong.
+    /// Nothing while it waits for its first samples; then its cells in all passes, and where the extra ones belong.
     before: Option<(Vec<Cell>, Vec<Extra>)>,
     sampled: Sampled<O>,
 }
@@ -91,7 +93,7 @@ impl Cache {
                 let k = waiting[i];
                 match &states[k] {
                     State::Waiting(hemisphere) => next.go_on(&queries[chosen[k]], hemisphere, chain),
-                    State::Done(outcome) => State::Done(*outcome),
+                    State::Done(outcome) => State::Done(outcome.clone()),
                 }
             });
             for (k, state) in waiting.into_iter().zip(went) {
@@ -124,10 +126,10 @@ impl<S: Sampler> Round<'_, S> {
         };
         // A cache without divisions ends before this.
         let Some(plan) = plan else { return State::Done(Outcome::Nothing) };
-        let sampled = trace(self.cache, self.sampler, query, plan.len(), chain, |sample| {
-            plan.ray(plan.direction(sample), sample)
-        });
-        self.count(&sampled);
+        let wanted = (plan.len(), self.passes(query));
+        let sampled =
+            trace(self.cache, self.sampler, query, wanted, chain, |sample| plan.ray(plan.direction(sample), sample));
+        self.count(plan.len(), &sampled);
         if sampled.misses.is_empty() {
             self.extend(query, plan, &sampled.returned, chain)
         } else {
@@ -153,17 +155,23 @@ impl<S: Sampler> Round<'_, S> {
         chain: &mut Chain,
     ) -> State<S::Origin> {
         let least = least_distance(&self.cache.limits);
-        let cells: Vec<Cell> = returned.iter().map(|r| cell(*r, least)).collect();
-        let extras = if self.kept == Kept::Yes { self.extras(query, &plan, &cells) } else { Vec::new() };
+        let passes = self.passes(query).len();
+        let mut cells = Vec::with_capacity(returned.len());
+        for pass in 0..passes {
+            cells.extend(of_pass(returned, pass, passes).map(|r| cell(*r, least)));
+        }
+        let extras =
+            if self.kept == Kept::Yes { self.extras(query, &plan, &together(&cells, plan.len())) } else { Vec::new() };
         if extras.is_empty() {
             return State::Done(self.finish(query, &plan, &cells));
         }
-        let sampled = trace(self.cache, self.sampler, query, extras.len(), chain, |sample| {
+        let wanted = (extras.len(), self.passes(query));
+        let sampled = trace(self.cache, self.sampler, query, wanted, chain, |sample| {
             let (cell, k) = extras[sample];
             let direction = plan.frame().to_world(plan.extra_local(cell, k));
             plan.ray(direction, plan.len() + sample)
         });
-        self.count(&sampled);
+        self.count(extras.len(), &sampled);
         if sampled.misses.is_empty() {
             State::Done(self.refine(query, &plan, cells, &extras, &sampled.returned))
         } else {
@@ -194,16 +202,19 @@ impl<S: Sampler> Round<'_, S> {
         returned: &[Option<Sample>],
     ) -> Outcome {
         let least = least_distance(&self.cache.limits);
-        let mut returned = returned.iter();
-        for run in extras.chunk_by(|a, b| a.0 == b.0) {
-            let cell = &mut cells[run[0].0];
-            let (mut sum, mut count) = (cell.radiance, 1.0);
-            for sample in returned.by_ref().take(run.len()).flatten() {
-                sum += sample.radiance;
-                count += 1.0;
-                cell.nearness = cell.nearness.max(1.0 / sample.distance.max(least));
+        let passes = self.passes(query).len();
+        for (pass, cells) in cells.chunks_mut(plan.len()).enumerate() {
+            let mut returned = of_pass(returned, pass, passes);
+            for run in extras.chunk_by(|a, b| a.0 == b.0) {
+                let cell = &mut cells[run[0].0];
+                let (mut sum, mut count) = (cell.radiance, 1.0);
+                for sample in returned.by_ref().take(run.len()).flatten() {
+                    sum += sample.radiance;
+                    count += 1.0;
+                    cell.nearness = cell.nearness.max(1.0 / sample.distance.max(least));
+                }
+                cell.radiance = sum / count;
             }
-            cell.radiance = sum / count;
         }
         self.finish(query, plan, &cells)
     }
@@ -212,14 +223,48 @@ impl<S: Sampler> Round<'_, S> {
         if self.kept == Kept::No {
             return once(query, plan, cells);
         }
-        let outcome = finish(&self.cache.limits, query, plan, cells);
-        if self.cache.quantised { outcome.quantised(query) } else { outcome }
+        let mut outcome = finish(&self.cache.limits, query, plan, &together(cells, plan.len()));
+        if cells.len() > plan.len() {
+            outcome = outcome.by_pass(query, cells.chunks(plan.len()).map(mean));
+        }
+        match &self.cache.quantised {
+            Some(components) => outcome.quantised(query, components),
+            None => outcome,
+        }
     }
 
-    fn count(&self, sampled: &Sampled<S::Origin>) {
-        self.samples.fetch_add(sampled.returned.len() as u64, Relaxed);
+    /// The passes that a hemisphere's samples are traced in: all that a record has values of, or the one that asks.
+    fn passes(&self, query: &Query<S::Origin>) -> Range<u8> {
+        match self.kept {
+            Kept::Yes => 0..self.cache.params.passes.max(1),
+            Kept::No => query.pass..query.pass + 1,
+        }
+    }
+
+    fn count(&self, samples: usize, sampled: &Sampled<S::Origin>) {
+        self.samples.fetch_add(samples as u64, Relaxed);
         self.repaired.fetch_add(sampled.repaired, Relaxed);
     }
+}
+
+/// What one pass of several brought back.
+fn of_pass(returned: &[Option<Sample>], pass: usize, passes: usize) -> impl Iterator<Item = &Option<Sample>> {
+    returned.get(pass..).unwrap_or_default().iter().step_by(passes)
+}
+
+/// The cells by which extra samples, derivatives and radii are decided: of all passes, one after the other, the mean.
+fn together(cells: &[Cell], len: usize) -> Cow<'_, [Cell]> {
+    let (first, further) = cells.split_at(len);
+    if further.is_empty() {
+        return Cow::Borrowed(first);
+    }
+    let mut together = first.to_vec();
+    for pass in further.chunks(len) {
+        together.iter_mut().zip(pass).for_each(|(cell, other)| cell.radiance += other.radiance);
+    }
+    let share = len as f32 / cells.len() as f32;
+    together.iter_mut().for_each(|cell| cell.radiance *= share);
+    Cow::Owned(together)
 }
 
 /// The cell of a first sample.

@@ -120,11 +120,11 @@ impl Sampler for Noting<'_> {
         work: &mut MutexGuard<'_, Work>,
         cache: &Cache,
         query: &Query<Origin>,
-        ray: SampleRay,
+        ray: &SampleRay,
         misses: &mut Vec<Miss<Origin>>,
     ) -> Option<Sample> {
         let mut hemispheres = self.hemispheres.lock().unwrap_or_else(PoisonError::into_inner);
-        hemispheres.entry(key(query)).or_default().push(ray);
+        hemispheres.entry(key(query)).or_default().push(*ray);
         drop(hemispheres);
         self.tracer.follow(work, cache, query, ray, misses)
     }
@@ -148,11 +148,10 @@ impl Renderer {
         }
         let mut hemispheres = Hemispheres::new();
         for _ in 0..MOST_ROUNDS {
-            let tracer =
-                Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works, pass: 0 };
+            let tracer = Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works };
             let mut misses = Vec::new();
             let mut work = tracer.work();
-            Walk { tracer: &tracer, cache: &self.cache, work: &mut work, misses: &mut misses, observer: () }
+            Walk { tracer: &tracer, cache: &self.cache, work: &mut work, misses: &mut misses, pass: 0, observer: () }
                 .answer(request);
             drop(work);
             if misses.is_empty() || self.scene.fault.is_set() {
@@ -179,14 +178,19 @@ impl Renderer {
         hemispheres: Hemispheres,
         visit: &mut dyn FnMut(&TreeRay, Names<'_>),
     ) -> Answer {
-        let tracer =
-            Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works, pass: 0 };
+        let tracer = Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works };
         let names = |id: ObjectId| self.name(id);
         let mut misses = Vec::new();
         let mut work = tracer.work();
         let mut watch = Watch { visit: &mut |ray| visit(ray, &names), hemispheres };
-        let mut walk =
-            Walk { tracer: &tracer, cache: &self.cache, work: &mut work, misses: &mut misses, observer: &mut watch };
+        let mut walk = Walk {
+            tracer: &tracer,
+            cache: &self.cache,
+            work: &mut work,
+            misses: &mut misses,
+            pass: 0,
+            observer: &mut watch,
+        };
         let mut answer = walk.answer(request);
         drop(work);
         if !misses.is_empty() && !self.scene.fault.is_set() {
@@ -205,7 +209,7 @@ impl<O: Observer> Walk<'_, O> {
         let Some(rays) = self.observer.take_hemisphere(query) else { return };
         let share = coefficient / rays.len() as f32;
         for sample in rays {
-            let mut child = self.tracer.hemisphere_ray(query, sample);
+            let mut child = self.tracer.hemisphere_ray(query, &sample);
             if child.fate(true, &self.tracer.options.limits) != Fate::Alive {
                 continue;
             }

@@ -149,6 +149,7 @@ impl Room {
                     shading: h.normal,
                     weight: query.weight * weight,
                     level: query.level + 1,
+                    pass: query.pass,
                     origin: (),
                 };
                 (Sample { radiance, distance: h.distance }, Some(Miss { coefficient: h.reflectance, query: next }))
@@ -185,6 +186,7 @@ impl Room {
                     shading: h.normal,
                     weight: self.weight,
                     level: 0,
+                    pass: 0,
                     origin: (),
                 };
                 misses.push(Miss { coefficient: h.reflectance, query });
@@ -208,7 +210,7 @@ impl Sampler for Room {
         (): &mut (),
         cache: &Cache,
         query: &Query<()>,
-        SampleRay { direction, weight, stream }: SampleRay,
+        &SampleRay { direction, weight, stream, .. }: &SampleRay,
         misses: &mut Vec<Miss<()>>,
     ) -> Option<Sample> {
         let (mut sample, question) = self.look(query, direction, weight, stream);

@@ -16,13 +16,7 @@ pub struct Spectra {
 impl Spectra {
     /// From the answers of all passes to the same requests; one pass serves all bins.
     pub(crate) fn gather(spectrum: &Spectrum, passes: &[Vec<Answer>]) -> Self {
-        // Pass and channel of each bin.
-        let mut places = vec![(0, 0); spectrum.bins()];
-        for channel in 0..3 {
-            for (pass, bin) in spectrum.channel(channel).into_iter().enumerate() {
-                places[bin] = (pass.min(passes.len() - 1), channel);
-            }
-        }
+        let places = spectrum.places(passes.len());
         let count = passes.first().map_or(0, Vec::len);
         let all = |colour: fn(&Answer) -> Rgb| {
             let of = |i: usize| places.iter().map(move |&(pass, channel)| colour(&passes[pass][i])[channel]);
