@@ -7,8 +7,8 @@ use ambit_cli::{Class, Failure, Function, Output, Rendering};
 use ambit_file::{Header, general};
 use ambit_render::picture::SourceOutline;
 use ambit_render::{
-    Answer, Definition, Environment, Names, OctreeSource, Options, Renderer, Request, SceneFingerprint, Spectra, Store,
-    TreeRay, load,
+    Answer, Definition, Environment, OctreeSource, Options, Renderer, Request, SceneFingerprint, Spectra, Store, Visit,
+    load,
 };
 use ambit_scene::{ErrorClass, ObjectId};
 use std::borrow::Cow;
@@ -19,7 +19,7 @@ pub(crate) trait Light {
     /// Answers a batch, in order.
     fn trace(&mut self, requests: &[Request]) -> Result<Vec<Answer>, Stop>;
     /// Answers one ray, and shows all that follow from it as they finish.
-    fn trace_tree(&mut self, request: &Request, visit: &mut dyn FnMut(&TreeRay, Names<'_>)) -> Result<Answer, Stop>;
+    fn trace_tree(&mut self, request: &Request, visit: Visit<'_>) -> Result<Answer, Stop>;
     /// Spectra of the last batch, if the calculation is by wavelength.
     fn spectra(&self) -> Option<&Spectra> {
         None
@@ -46,6 +46,15 @@ struct Spectral {
     spectra: Option<Spectra>,
     /// What answers are converted to.
     conversion: SpectralConversion,
+}
+
+impl Spectral {
+    /// What answer `i` is converted to.
+    fn colour(&self, spectra: &Spectra, i: usize) -> Rgb {
+        let mut channels = Channels::default();
+        self.conversion.apply(spectra.bins(i).value, &mut channels);
+        Rgb::from_slice(&channels)
+    }
 }
 
 impl<'a> Scene<'a> {
@@ -134,10 +143,8 @@ impl Light for Scene<'_> {
             None => self.renderer.trace(requests, notify).map_err(failed)?,
             Some(spectral) => {
                 let (mut answers, spectra) = self.renderer.trace_spectra(requests, notify).map_err(failed)?;
-                let mut channels = Channels::default();
                 for (i, answer) in answers.iter_mut().enumerate() {
-                    spectral.conversion.apply(spectra.value(i), &mut channels);
-                    answer.value = Rgb::from_slice(&channels);
+                    answer.value = spectral.colour(&spectra, i);
                 }
                 spectral.spectra = Some(spectra);
                 answers
@@ -147,9 +154,13 @@ impl Light for Scene<'_> {
         Ok(answers)
     }
 
-    fn trace_tree(&mut self, request: &Request, visit: &mut dyn FnMut(&TreeRay, Names<'_>)) -> Result<Answer, Stop> {
+    fn trace_tree(&mut self, request: &Request, visit: Visit<'_>) -> Result<Answer, Stop> {
         self.session.check()?;
-        let answer = self.renderer.trace_tree(request, &self.session.messages, visit).map_err(failed)?;
+        let (mut answer, spectra) = self.renderer.trace_tree(request, &self.session.messages, visit).map_err(failed)?;
+        if let (Some(spectral), Some(spectra)) = (&mut self.spectrum, spectra) {
+            answer.value = spectral.colour(&spectra, 0);
+            spectral.spectra = Some(spectra);
+        }
         self.session.meter.set_rays(self.renderer.rays());
         Ok(answer)
     }

@@ -140,9 +140,6 @@ fn limits_and_options_are_refused_as_by_radiance() {
     let refused = bench.rpict(&format!("{VIEW} -cs 6 -cw 600 700"));
     assert!(says(&refused).starts_with("rpict: fatal - unsupported spectral sampling"), "{}", says(&refused));
     assert!(says(&bench.rpict(&format!("{VIEW} -cs 9 -co+"))).contains("command line error at '-co+'"));
-    let refused = bench.rtrace("-cs 9 -otdv", DOWN);
-    assert_eq!(refused.status.code(), Some(1));
-    assert!(says(&refused).contains("ray trees (-otdv) with -cs above 3 are not supported"), "{}", says(&refused));
     // More than 24 bins are 24.
     assert_eq!(numbers(&bench.rtrace("-h -w -cs 40 -co+", DOWN).stdout).len(), 24);
 }

@@ -111,7 +111,7 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
     if taken == 0 {
         return Outcome::Nothing;
     }
-    let value = mean(cells);
+    let value = mean(cells.iter());
     if taken < cells.len() {
         return Outcome::Once(value);
     }
@@ -149,9 +149,10 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
 }
 
 /// Mean radiance of the cells, those whose samples were refused being black.
-pub(crate) fn mean(cells: &[Cell]) -> Rgb {
-    let sum: DVec3 = cells.iter().filter(|c| c.distance > 0.0).map(|c| c.radiance.as_dvec3()).sum();
-    (sum * (1.0 / cells.len() as f64)).as_vec3()
+pub(crate) fn mean<'c>(cells: impl ExactSizeIterator<Item = &'c Cell>) -> Rgb {
+    let share = 1.0 / cells.len() as f64;
+    let sum: DVec3 = cells.filter(|c| c.distance > 0.0).map(|c| c.radiance.as_dvec3()).sum();
+    (sum * share).as_vec3()
 }
 
 /// The ellipse of the Hessian and the rotational gradient of a hemisphere of the given mean radiance; none in the dark.

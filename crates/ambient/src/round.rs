@@ -155,11 +155,7 @@ impl<S: Sampler> Round<'_, S> {
         chain: &mut Chain,
     ) -> State<S::Origin> {
         let least = least_distance(&self.cache.limits);
-        let passes = self.passes(query).len();
-        let mut cells = Vec::with_capacity(returned.len());
-        for pass in 0..passes {
-            cells.extend(of_pass(returned, pass, passes).map(|r| cell(*r, least)));
-        }
+        let cells: Vec<Cell> = returned.iter().map(|r| cell(*r, least)).collect();
         let extras =
             if self.kept == Kept::Yes { self.extras(query, &plan, &together(&cells, plan.len())) } else { Vec::new() };
         if extras.is_empty() {
@@ -203,12 +199,13 @@ impl<S: Sampler> Round<'_, S> {
     ) -> Outcome {
         let least = least_distance(&self.cache.limits);
         let passes = self.passes(query).len();
-        for (pass, cells) in cells.chunks_mut(plan.len()).enumerate() {
-            let mut returned = of_pass(returned, pass, passes);
-            for run in extras.chunk_by(|a, b| a.0 == b.0) {
-                let cell = &mut cells[run[0].0];
+        let mut returned = returned;
+        for run in extras.chunk_by(|a, b| a.0 == b.0) {
+            let (own, rest) = returned.split_at(run.len() * passes);
+            returned = rest;
+            for (pass, cell) in cells[run[0].0 * passes..][..passes].iter_mut().enumerate() {
                 let (mut sum, mut count) = (cell.radiance, 1.0);
-                for sample in returned.by_ref().take(run.len()).flatten() {
+                for sample in own.iter().skip(pass).step_by(passes).flatten() {
                     sum += sample.radiance;
                     count += 1.0;
                     cell.nearness = cell.nearness.max(1.0 / sample.distance.max(least));
@@ -224,8 +221,9 @@ impl<S: Sampler> Round<'_, S> {
             return once(query, plan, cells);
         }
         let mut outcome = finish(&self.cache.limits, query, plan, &together(cells, plan.len()));
-        if cells.len() > plan.len() {
-            outcome = outcome.by_pass(query, cells.chunks(plan.len()).map(mean));
+        let passes = cells.len() / plan.len();
+        if passes > 1 {
+            outcome = outcome.by_pass(query, (0..passes).map(|pass| mean(cells.iter().skip(pass).step_by(passes))));
         }
         match &self.cache.quantised {
             Some(components) => outcome.quantised(query, components),
@@ -247,24 +245,15 @@ impl<S: Sampler> Round<'_, S> {
     }
 }
 
-/// What one pass of several brought back.
-fn of_pass(returned: &[Option<Sample>], pass: usize, passes: usize) -> impl Iterator<Item = &Option<Sample>> {
-    returned.get(pass..).unwrap_or_default().iter().step_by(passes)
-}
-
-/// The cells by which extra samples, derivatives and radii are decided: of all passes, one after the other, the mean.
-fn together(cells: &[Cell], len: usize) -> Cow<'_, [Cell]> {
-    let (first, further) = cells.split_at(len);
-    if further.is_empty() {
-        return Cow::Borrowed(first);
+/// The `count` cells by which extra samples, derivatives and radii are decided: the mean of each over all passes, which
+/// follow each other cell by cell.
+fn together(cells: &[Cell], count: usize) -> Cow<'_, [Cell]> {
+    if cells.len() == count {
+        return Cow::Borrowed(cells);
     }
-    let mut together = first.to_vec();
-    for pass in further.chunks(len) {
-        together.iter_mut().zip(pass).for_each(|(cell, other)| cell.radiance += other.radiance);
-    }
-    let share = len as f32 / cells.len() as f32;
-    together.iter_mut().for_each(|cell| cell.radiance *= share);
-    Cow::Owned(together)
+    let passes = cells.len() / count;
+    let mean = |all: &[Cell]| Cell { radiance: all.iter().map(|c| c.radiance).sum::<Rgb>() / passes as f32, ..all[0] };
+    cells.chunks(passes).map(mean).collect()
 }
 
 /// The cell of a first sample.

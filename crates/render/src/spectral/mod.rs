@@ -13,7 +13,7 @@ mod spectra;
 pub(crate) use cie::{desaturate, rgb_of_xyz};
 pub use efficiency::Efficiency;
 pub(crate) use efficiency::tristimulus;
-pub use spectra::Spectra;
+pub use spectra::{Bins, Spectra};
 
 use ambit_ambient::Components;
 use glam::DVec3;
