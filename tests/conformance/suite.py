@@ -6,6 +6,7 @@ Checks, one line of the table each:
   NAME sensors       irradiance at the scene's sensors: mean, and RMS error against converged values
   NAME octree        octrees of either side, frozen or not, read by both: the same answers
   NAME ambient       ambient files of either side, continued by the other
+  NAME wavelength    the same by wavelength (-cs 9)
   NAME lookamb       our lookamb and theirs print both sides' ambient files alike
   types TYPE         picture of fixtures/types/TYPE.rad, nothing random: means, and pixel by pixel
 """
@@ -201,13 +202,13 @@ def records(side, path):
     return numbers(side.run("lookamb", ["-h", "-d", path], path.parent))
 
 
-def ambient(scene, ours, theirs):
+def ambient(scene, ours, theirs, kind="ambient", more=()):
     """Each side makes a file; the other continues it: it must use the records and add hardly any."""
-    check, work = f"{scene.name} ambient", folder("exchange", scene.name, "ambient")
+    check, work = f"{scene.name} {kind}", folder("exchange", scene.name, kind)
     view, lines, good = scene.folder / scene.views[0], [], True
     octrees = {s.name: scene.octree(s, work / f"{s.name}.oct") for s in (ours, theirs)}
     def render(side, file, out):
-        arguments = ["-vf", view, "-x", SIZE, "-y", SIZE, *CACHED, "-af", file, octrees[side.name]]
+        arguments = ["-vf", view, "-x", SIZE, "-y", SIZE, *CACHED, *more, "-af", file, octrees[side.name]]
         side.run("rpict", arguments, scene.folder, out=work / out)
         return pictures.read(work / out)
     for maker, user in ((ours, theirs), (theirs, ours)):
@@ -224,6 +225,10 @@ def ambient(scene, ours, theirs):
         good &= added <= own + 0.10 and abs(mean) <= MEAN and before > 20
         lines.append(f"{user.name} continue {maker.name}: {before} records, {percent(added)} more (itself {percent(own)}), mean {100 * mean:+.2f} %")
     return Line(check, "agrees" if good else "FAILS", note="; ".join(lines))
+
+
+def wavelength(scene, ours, theirs):
+    return ambient(scene, ours, theirs, "wavelength", ["-cs", 9])
 
 
 def lookamb(scene, ours, theirs):
@@ -275,6 +280,7 @@ def main():
     bundled, outside = scenes.bundled(), scenes.outside()
     jobs = [(f, s) for s in bundled for f in (octree, lookamb, direct, sensors, cached)]
     jobs += [(ambient, s) for s in bundled if s.name in ("room", "cornell", "optics")]
+    jobs += [(wavelength, s) for s in bundled if s.name in ("room", "cornell")]
     jobs += [(direct, s) for s in outside] + [(cached, s) for s in outside]
     jobs += [(one_type, kind) for kind in primitives.types()]
     name = lambda job: f"types {job[1]}" if job[0] is one_type else f"{job[1].name} {job[0].__name__}"

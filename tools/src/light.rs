@@ -7,8 +7,8 @@ use ambit_cli::{Class, Failure, Function, Output, Rendering};
 use ambit_file::{Header, general};
 use ambit_render::picture::SourceOutline;
 use ambit_render::{
-    Answer, Definition, Environment, Names, OctreeSource, Options, Renderer, Request, SceneFingerprint, Spectra, Store,
-    TreeRay, load,
+    Answer, Definition, Environment, OctreeSource, Options, Renderer, Request, SceneFingerprint, Spectra, Store, Visit,
+    load,
 };
 use ambit_scene::{ErrorClass, ObjectId};
 use std::borrow::Cow;
@@ -19,7 +19,7 @@ pub(crate) trait Light {
     /// Answers a batch, in order.
     fn trace(&mut self, requests: &[Request]) -> Result<Vec<Answer>, Stop>;
     /// Answers one ray, and shows all that follow from it as they finish.
-    fn trace_tree(&mut self, request: &Request, visit: &mut dyn FnMut(&TreeRay, Names<'_>)) -> Result<Answer, Stop>;
+    fn trace_tree(&mut self, request: &Request, visit: Visit<'_>) -> Result<Answer, Stop>;
     /// Spectra of the last batch, if the calculation is by wavelength.
     fn spectra(&self) -> Option<&Spectra> {
         None
@@ -46,6 +46,15 @@ struct Spectral {
     spectra: Option<Spectra>,
     /// What answers are converted to.
     conversion: SpectralConversion,
+}
+
+impl Spectral {
+    /// What answer `i` is converted to.
+    fn colour(&self, spectra: &Spectra, i: usize) -> Rgb {
+        let mut channels = Channels::default();
+        self.conversion.apply(spectra.bins(i).value, &mut channels);
+        Rgb::from_slice(&channels)
+    }
 }
 
 impl<'a> Scene<'a> {
@@ -118,10 +127,6 @@ impl<'a> Scene<'a> {
     pub(crate) fn close(mut self) -> Result<(), Stop> {
         let result = self.renderer.finish(&self.session.messages).map_err(failed);
         if let Some(report) = self.renderer.report() {
-            if self.renderer.passes() > 1 {
-                let passes = self.renderer.passes();
-                self.session.messages.print(format_args!("statistics - the first of {passes} passes, by wavelength:"));
-            }
             for line in crate::statistics::lines(&report, self.session.meter.seconds()) {
                 self.session.messages.print(format_args!("statistics - {line}"));
             }
@@ -138,10 +143,8 @@ impl Light for Scene<'_> {
             None => self.renderer.trace(requests, notify).map_err(failed)?,
             Some(spectral) => {
                 let (mut answers, spectra) = self.renderer.trace_spectra(requests, notify).map_err(failed)?;
-                let mut channels = Channels::default();
                 for (i, answer) in answers.iter_mut().enumerate() {
-                    spectral.conversion.apply(spectra.value(i), &mut channels);
-                    answer.value = Rgb::from_slice(&channels);
+                    answer.value = spectral.colour(&spectra, i);
                 }
                 spectral.spectra = Some(spectra);
                 answers
@@ -151,9 +154,13 @@ impl Light for Scene<'_> {
         Ok(answers)
     }
 
-    fn trace_tree(&mut self, request: &Request, visit: &mut dyn FnMut(&TreeRay, Names<'_>)) -> Result<Answer, Stop> {
+    fn trace_tree(&mut self, request: &Request, visit: Visit<'_>) -> Result<Answer, Stop> {
         self.session.check()?;
-        let answer = self.renderer.trace_tree(request, &self.session.messages, visit).map_err(failed)?;
+        let (mut answer, spectra) = self.renderer.trace_tree(request, &self.session.messages, visit).map_err(failed)?;
+        if let (Some(spectral), Some(spectra)) = (&mut self.spectrum, spectra) {
+            answer.value = spectral.colour(&spectra, 0);
+            spectral.spectra = Some(spectra);
+        }
         self.session.meter.set_rays(self.renderer.rays());
         Ok(answer)
     }
@@ -215,7 +222,7 @@ fn ambient_header(rendering: &Rendering, octree: &str) -> Vec<String> {
     };
     let line = format!(
         "rpict -av {} {} {} -aw {} -ab {} -aa {} -ad {} -as {} -ar {}{mist}{}{} -dr {} -ds {} -dt {} -dc {} -ss {} -st {} \
-         -lr {} -lw {} -cw {} {} -cs 3 {octree}",
+         -lr {} -lw {} -cw {} {} -cs {} {octree}",
         f(a.value.x),
         f(a.value.y),
         f(a.value.z),
@@ -236,7 +243,8 @@ fn ambient_header(rendering: &Rendering, octree: &str) -> Vec<String> {
         o.limits.reflections,
         g(o.limits.weight),
         g(shortest),
-        g(longest)
+        g(longest),
+        o.spectrum.bins()
     );
     let [date, gmt] = Session::time_lines();
     vec![line, format!("SOFTWARE= {}", ambit_cli::VERSION), date, gmt]

@@ -194,7 +194,6 @@ fn errors_have_their_class_and_status() {
         ("-e /nonexistent/x scene.oct", "", 2),
         ("-features Nope", "rtrace: missing feature - Nope", 1),
         ("-P file", "rtrace: fatal - persist mode (-P, -PP) without an octree is not supported", 1),
-        ("-cs 9 -af x scene.oct", "rtrace: fatal - an ambient file (-af x) with -cs above 3 is not supported", 1),
         ("-ovt scene.oct", "", 0),
         ("-fac -otv scene.oct", "rtrace: fatal - color format only with -ov, -or, -ox", 1),
     ] {

@@ -1,7 +1,6 @@
 //! Calculations by wavelength as a script sees them: headers, pixels, pictures, what is refused. The numbers are answers of
 //! Radiance 6.0a.
 
-use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
@@ -41,10 +40,6 @@ impl Bench {
 
     fn rpict(&self, line: &str) -> Output {
         self.run(env!("CARGO_BIN_EXE_rpict"), &format!("{line} scene.oct"), b"")
-    }
-
-    fn exists(&self, name: &str) -> bool {
-        Path::new(self.0.path()).join(name).exists()
     }
 }
 
@@ -145,22 +140,90 @@ fn limits_and_options_are_refused_as_by_radiance() {
     let refused = bench.rpict(&format!("{VIEW} -cs 6 -cw 600 700"));
     assert!(says(&refused).starts_with("rpict: fatal - unsupported spectral sampling"), "{}", says(&refused));
     assert!(says(&bench.rpict(&format!("{VIEW} -cs 9 -co+"))).contains("command line error at '-co+'"));
-    let refused = bench.rtrace("-cs 9 -otdv", DOWN);
-    assert_eq!(refused.status.code(), Some(1));
-    assert!(says(&refused).contains("ray trees (-otdv) with -cs above 3 are not supported"), "{}", says(&refused));
     // More than 24 bins are 24.
     assert_eq!(numbers(&bench.rtrace("-h -w -cs 40 -co+", DOWN).stdout).len(), 24);
 }
 
+/// Options of a small calculation of the room.
+const COARSE: &str = "-w -u- -ab 2 -aa .2 -ad 64 -as 16 -ar 32";
+
+/// Rays that meet the room's surfaces at many places.
+fn rays() -> Vec<u8> {
+    let at = |k: u32| format!("{} {} 1 {} {} -1\n", k % 4, k / 4 % 4, f64::from(k % 7) - 3.0, f64::from(k % 5) - 2.0);
+    (0..64).map(at).collect::<String>().into_bytes()
+}
+
+/// Header, and records of the ambient file of a calculation of `bins`.
+fn ambient(bench: &Bench, name: &str, bins: usize) -> (String, Vec<Vec<u8>>) {
+    let bytes = std::fs::read(bench.0.path().join(name)).unwrap();
+    let end = bytes.windows(2).position(|w| w == b"\n\n").unwrap();
+    let (records, rest) = (bytes[end + 4..].chunks_exact(64 + bins), (bytes.len() - end - 4) % (64 + bins));
+    assert_eq!((&bytes[end + 2..end + 4], rest), (&[0x02, 0x31][..], 0));
+    (String::from_utf8(bytes[..end].to_vec()).unwrap(), records.map(<[u8]>::to_vec).collect())
+}
+
 #[test]
-fn ambient_files_are_refused() {
-    let bench = Bench::new(SCENE);
-    for output in [bench.rtrace("-cs 9 -af x.amb -ab 1", DOWN), bench.rpict(&format!("{VIEW} -cs 9 -af x.amb -ab 1"))] {
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(1));
-        assert!(text.contains("-af x.amb") && text.contains("-cs") && text.contains("not supported"), "{text}");
-        assert!(!bench.exists("x.amb"));
+fn ambient_files_hold_all_bins() {
+    let bench = Bench::new(ROOM);
+    let run = |line: &str| bench.rtrace(&format!("-h {COARSE} -cs 9 -co+ {line}"), &rays()).stdout;
+    let alone = run("-n 1 -af alone.amb");
+    let (header, records) = ambient(&bench, "alone.amb", 9);
+    assert!(header.contains(" -cw 380 780 -cs 9 scene.oct\n"), "{header}");
+    assert!(header.ends_with("\nWAVELENGTH_SPLITS= 780 588 480 380\nNCOMP=9\nFORMAT=Radiance_ambval"), "{header}");
+    assert!(records.len() > 20, "{} records", records.len());
+    for threads in [2, 3] {
+        assert!(run(&format!("-n {threads} -af {threads}.amb")) == alone, "-n {threads} differs");
+        assert_eq!(ambient(&bench, &format!("{threads}.amb"), 9).1, records);
     }
+    // Who reads it computes nothing anew, and answers as who made it.
+    let again = run("-af alone.amb");
+    assert_eq!(ambient(&bench, "alone.amb", 9).1, records);
+    for (a, b) in numbers(&again).iter().zip(numbers(&alone)) {
+        assert!((a - b).abs() <= 2e-6 * b, "{a} {b}");
+    }
+    // Long waves are reflected more than short ones: every bin has a mantissa of its own.
+    let (long, short) = records.iter().fold((0, 0), |(l, s), r| (l + u32::from(r[65]), s + u32::from(r[70])));
+    assert!(long > 2 * short, "{long} {short}");
+}
+
+#[test]
+fn a_scene_without_spectra_fills_all_bins_of_a_channel_alike() {
+    let bench = Bench::new(&ROOM.replace("P plastic", "void plastic").replace("Q light", "void light"));
+    let run = |line: &str| numbers(&bench.rtrace(&format!("-h {COARSE} {line}"), &rays()).stdout);
+    let spectral = run("-cs 9 -co+ -af nine.amb");
+    let (_, records) = ambient(&bench, "nine.amb", 9);
+    assert!(!records.is_empty());
+    for r in &records {
+        assert_eq!((&r[63..67], &r[67..70], r[70]), (&[r[63]; 4][..], &[r[67]; 3][..], r[71]));
+    }
+    let colours = run("-af three.amb");
+    assert!(spectral.chunks(9).zip(colours.chunks(3)).all(|(bins, rgb)| [bins[0], bins[4], bins[7]] == rgb));
+}
+
+#[test]
+fn ambient_files_of_other_bins_are_refused() {
+    let bench = Bench::new(ROOM);
+    let run = |line: &str| bench.rtrace(&format!("-h {COARSE} {line} -af x.amb"), &rays());
+    assert_eq!(run("-cs 9").status.code(), Some(0));
+    let before = std::fs::read(bench.0.path().join("x.amb")).unwrap();
+    for (line, problem) in [
+        ("", "NCOMP=9, of another -cs (expected NCOMP=3)"),
+        ("-cs 6", "NCOMP=9, of another -cs (expected NCOMP=6)"),
+        ("-cs 9 -cw 400 700", "WAVELENGTH_SPLITS= 780 588 480 380, of another -cw (expected 700 588 480 400)"),
+    ] {
+        let refused = run(line);
+        assert_eq!(refused.status.code(), Some(1), "{line}");
+        let text = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(text.contains("bad/incompatible ambient file") && text.contains(problem), "{text}");
+    }
+    assert!(std::fs::read(bench.0.path().join("x.amb")).unwrap() == before);
+    // What is printed of a record is its colour.
+    let listed = bench.run(env!("CARGO_BIN_EXE_lookamb"), "-h -d x.amb", b"").stdout;
+    let rows: Vec<f64> = numbers(&listed);
+    assert_eq!(rows.len() / 21, ambient(&bench, "x.amb", 9).1.len());
+    assert!(rows.chunks(21).all(|r| r[13] > r[15] && r[14] > 0.0), "the room is reddish");
+    let sound = bench.run(env!("CARGO_BIN_EXE_ambrec"), "check x.amb", b"");
+    assert_eq!(sound.status.code(), Some(0), "{}", String::from_utf8_lossy(&sound.stdout));
 }
 
 #[test]

@@ -53,7 +53,7 @@ fn trees_are_those_of_radiance() {
         assert!(equal, "{name}:\nours\n{}\nrecorded\n{}", ours.join("\n"), theirs.join("\n"));
         cases += 1;
     }
-    assert_eq!(cases, 25);
+    assert_eq!(cases, 29);
 }
 
 /// A closed white box with a lamp in it.
@@ -85,6 +85,30 @@ fn rays_of_hemispheres_are_children_of_the_ray_that_asked() {
     let plain = rtrace(&octree, "-ab 2 -aa .2 -ad 32 -as 0 -ar 16 -ov", ray);
     assert_eq!(plain.trim_end(), lines[1 + second - 2].trim_end());
     assert_eq!(rtrace(&octree, &format!("{options} -n 3"), &format!("{ray};{ray}")), answer);
+}
+
+#[test]
+fn hemispheres_are_followed_in_all_bins() {
+    let folder = tempfile::tempdir().unwrap();
+    let spectral =
+        format!("void spectrum S 0 0 8 400 700 .2 .4 .5 .9 .6 .1 {}", ROOM.replace("void plastic", "S plastic"));
+    let octree = octree(&folder, &spectral);
+    let ray = "1 1 1 0 0 -1";
+    let options = "-ab 2 -aa .2 -ad 32 -as 0 -ar 16 -cs 9 -co+ -lr 6";
+    let numbers = |line: &str| line.split_whitespace().map(|w| w.parse().unwrap()).collect::<Vec<f64>>();
+    let answer = rtrace(&octree, &format!("{options} -otV"), ray);
+    let lines: Vec<&str> = answer.lines().collect();
+    let children: Vec<_> = lines.iter().filter(|l| l.starts_with('\t') && !l.starts_with("\t\t")).collect();
+    assert!((32..200).contains(&children.len()), "{} rays of the first hemisphere", children.len());
+    // What a ray brings by its hemisphere is the mean of what the hemisphere's rays bring, in every bin.
+    let (plain, direct) = (rtrace(&octree, &format!("{options} -ov"), ray), rtrace(&octree, "-cs 9 -co+ -ov", ray));
+    assert_eq!(plain.trim_end(), lines[lines.len() - 1].trim_end());
+    let mut sums = vec![0.0; 9];
+    children.iter().for_each(|l| sums.iter_mut().zip(numbers(l)).for_each(|(sum, v)| *sum += v));
+    for (bin, (whole, direct)) in numbers(&plain).into_iter().zip(numbers(&direct)).enumerate() {
+        assert!((sums[bin] - (whole - direct)).abs() <= 1e-4 * whole, "bin {bin}: {} of {}", sums[bin], whole - direct);
+    }
+    assert_eq!(rtrace(&octree, &format!("{options} -otV -n 3"), ray), answer);
 }
 
 #[test]

@@ -13,9 +13,14 @@ pub(crate) struct Average {
 }
 
 impl Average {
-    /// Counts a record's value, unless it is black.
-    pub(crate) fn add(&mut self, value: Rgb) {
-        let b = f64::from(value.brightness());
+    /// Counts a record by its values in all passes, unless it is black.
+    pub(crate) fn add(&mut self, values: impl Iterator<Item = Rgb>) {
+        let (mut sum, mut passes) = (0.0, 0);
+        for value in values {
+            sum += f64::from(value.brightness());
+            passes += 1;
+        }
+        let b = sum / f64::from(passes.max(1));
         if b > EPSILON {
             self.logarithms += b.ln();
             self.sum += b;
@@ -68,7 +73,7 @@ mod tests {
         assert_eq!(Average::default().fallback(&params), params.value);
         assert_eq!(average(3.0, 2).fallback(&Params { weight: 0, ..params }), params.value);
         let mut black = Average::default();
-        black.add(Rgb::ZERO);
+        black.add(std::iter::once(Rgb::ZERO));
         assert_eq!(black.fallback(&params), params.value);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::average::Average;
 use crate::clamping::Reins;
+use crate::components::Components;
 use crate::observe::{Observer, Stopwatch};
 use crate::params::{Limits, Params};
 use crate::radii::ANISOTROPY;
@@ -37,7 +38,8 @@ pub struct Cache {
     pub(crate) limits: Limits,
     pub(crate) store: Store,
     pub(crate) average: Average,
-    pub(crate) quantised: bool,
+    /// What ambient files keep of a value, if records are to be as they return them.
+    pub(crate) quantised: Option<Components>,
     pub(crate) statistics: Statistics,
     records: Vec<Record>,
     /// Radii that rein each other in, if they are to.
@@ -59,18 +61,18 @@ impl Cache {
     pub fn new(params: Params, cube_origin: DVec3, cube_edge: f64) -> Self {
         Self {
             limits: Limits::new(&params, cube_edge),
-            store: Store::new(cube_origin, cube_edge),
+            store: Store::new(cube_origin, cube_edge, params.passes),
             plain: params.caches(),
             observer: None,
             stopwatch: Stopwatch::default(),
             steps: Arc::default(),
             params,
             average: Average::default(),
-            quantised: false,
+            quantised: None,
             statistics: Statistics::default(),
             records: Vec::new(),
             reins: params.systems.neighbour_clamping.then(|| Reins::new(cube_origin, cube_edge)),
-            reuse: params.systems.measured_reuse.then(|| Reuse::new(&Limits::new(&params, cube_edge))),
+            reuse: params.systems.measured_reuse.then(|| Reuse::new(&Limits::new(&params, cube_edge), params.passes)),
             changed: Vec::new(),
         }
     }
@@ -95,17 +97,18 @@ impl Cache {
         &self.statistics
     }
 
-    /// Stores new records as an ambient file would return them, so that those who compute and those who read agree.
-    pub fn quantise(&mut self, on: bool) {
-        self.quantised = on;
+    /// Stores new records as an ambient file of such components would return them, so that those who compute and those
+    /// who read agree.
+    pub fn quantise(&mut self, components: Components) {
+        self.quantised = Some(components);
     }
 
     /// Takes in records from a file. Implausible ones and duplicates are dropped; returns how many.
     pub fn load(&mut self, records: impl IntoIterator<Item = Record>) -> usize {
         let mut dropped = 0;
         for record in records {
+            let level = usize::from(record.level);
             if self.insert(record) {
-                let level = usize::from(record.level);
                 let loaded = &mut self.statistics.loaded;
                 loaded.resize(loaded.len().max(level + 1), 0);
                 loaded[level] += 1;
@@ -118,7 +121,7 @@ impl Cache {
 
     /// Stores a record; false if it is implausible or there already.
     pub(crate) fn insert(&mut self, mut record: Record) -> bool {
-        if !record.is_plausible() {
+        if !record.is_plausible() || record.further.len() + 1 != usize::from(self.params.passes.max(1)) {
             return false;
         }
         record.radii[1] = record.radii[1].max(record.radii[0]);
@@ -131,11 +134,12 @@ impl Cache {
         if !self.store.insert(&record, self.params.accuracy.max(0.0)) {
             return false;
         }
-        self.average.add(record.value);
+        self.average.add(record.values());
+        let (position, radius) = (record.position, unwidened(&record));
         self.records.push(record);
         if let Some(reins) = &mut self.reins {
             self.changed.clear();
-            reins.insert(record.position, unwidened(&record), &mut self.changed);
+            reins.insert(position, radius, &mut self.changed);
             for &(id, radius) in &self.changed {
                 let record = &mut self.records[id as usize];
                 clamp(record, radius);

@@ -1,14 +1,17 @@
 //! The bytes of a record in ambient files: big-endian, without padding; reals are 31-bit mantissas with a binary
-//! exponent, directions 32-bit codes, the value three mantissas with a common exponent.
+//! exponent, directions 32-bit codes, the value a mantissa for each component with a common exponent.
 
+use crate::components::Components;
 use crate::record::Record;
 use ambit_base::{DVec3, Rgb};
-use ambit_file::{FLOAT_BYTES, decode_direction, decode_float, decode_pixel};
-use ambit_file::{encode_direction, encode_float, encode_pixel};
+use ambit_file::{FLOAT_BYTES, decode_direction, decode_float, decode_spectrum};
+use ambit_file::{encode_direction, encode_float, encode_spectrum};
 use std::ops::Range;
 
-/// The length of a record of three channels.
+/// The length of a record of three components.
 pub const RECORD_BYTES: usize = 67;
+/// The length of a record without the mantissas of its value.
+const FRAME_BYTES: usize = 64;
 
 /// The order of fields, told by the magic number after the header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,9 +53,14 @@ impl Layout {
         }
     }
 
-    /// The bytes of a record.
-    pub fn encode(self, record: &Record) -> [u8; RECORD_BYTES] {
-        let mut bytes = [0; RECORD_BYTES];
+    /// The length of a record.
+    pub fn record_bytes(self, components: &Components) -> usize {
+        FRAME_BYTES + components.count()
+    }
+
+    /// The bytes of a record. The older layout has three components.
+    pub fn encode(self, record: &Record, components: &Components) -> Vec<u8> {
+        let mut bytes = vec![0; self.record_bytes(components)];
         let (value, radii, corral) = self.offsets();
         let mut put = |at: usize, part: &[u8]| bytes[at..at + part.len()].copy_from_slice(part);
         put(0, &[record.level]);
@@ -67,18 +75,24 @@ impl Layout {
             put(radii + k * FLOAT_BYTES, &encode_float(f64::from(x)));
         }
         put(corral, &record.corral.to_be_bytes());
-        put(value, &encode_pixel(record.value));
+        let mut channels = [0.0; Components::MOST];
+        channels.iter_mut().zip(components.of(record)).for_each(|(channel, c)| *channel = c);
+        encode_spectrum(&channels[..components.count()], &mut bytes[value..]);
         bytes
     }
 
-    /// The record in the bytes, not checked for plausibility: a null code gives a null direction.
-    pub fn decode(self, bytes: &[u8; RECORD_BYTES]) -> Record {
+    /// The record in the bytes, as many as [`Layout::record_bytes`], not checked for plausibility: a null code gives a
+    /// null direction.
+    pub fn decode(self, bytes: &[u8], components: &Components) -> Record {
         let (value, radii, corral) = self.offsets();
         let real = |at: usize| decode_float([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3], bytes[at + 4]]);
         let word = |at: usize| [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]];
         let pair = |k: usize| [0, 1].map(|i| real(radii + (k + i) * FLOAT_BYTES) as f32);
         let direction = |at: usize| decode_direction(u32::from_be_bytes(word(at)));
-        Record {
+        let mut channels = [0.0; Components::MOST];
+        let channels = &mut channels[..components.count()];
+        decode_spectrum(&bytes[value..], channels);
+        let mut record = Record {
             position: DVec3::new(real(6), real(11), real(16)),
             normal: direction(21),
             u: direction(25),
@@ -88,8 +102,11 @@ impl Layout {
             gradient: pair(2),
             rotation: pair(4),
             corral: u32::from_be_bytes(word(corral)),
-            value: decode_pixel(word(value)) as Rgb,
-        }
+            value: Rgb::ZERO,
+            further: Box::default(),
+        };
+        components.give(channels, &mut record);
+        record
     }
 }
 
@@ -112,9 +129,13 @@ mod tests {
         0xa8, 0x78, 0x48, 0x7d,
     ];
 
+    fn rgb() -> Components {
+        Components::default()
+    }
+
     #[test]
     fn a_record_of_a_real_file_is_understood() {
-        let r = Layout::V561.decode(&EXAMPLE);
+        let r = Layout::V561.decode(&EXAMPLE, &rgb());
         assert_eq!((r.level, r.weight, r.corral), (1, 0.5, 0));
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "{a} instead of {b}");
         for (a, b) in r.position.to_array().into_iter().zip([1.064592, 0.317217, 3.0]) {
@@ -132,7 +153,45 @@ mod tests {
         near(f64::from(r.value.x), 8.227539e-2);
         near(f64::from(r.value.z), 3.540039e-2);
         assert!(r.is_plausible());
-        assert_eq!(Layout::V561.encode(&r), EXAMPLE);
+        assert_eq!(Layout::V561.encode(&r, &rgb()), EXAMPLE);
+    }
+
+    /// Of `-cs 9`, and the colour that another program made of it.
+    #[rustfmt::skip]
+    const SPECTRAL: [u8; 73] = [
+        0x01, 0x3f, 0xff, 0xff, 0xff, 0x00,
+        0x78, 0x45, 0x23, 0x7f, 0x00, 0x5c, 0xc6, 0x10, 0x7f, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00,
+        0x00, 0x00, 0x00, 0x08, 0x00, 0x00, 0xd6, 0x79,
+        0x66, 0x66, 0x87, 0xff, 0x00, 0x66, 0x66, 0x87, 0xff, 0x00,
+        0x46, 0x7d, 0xd1, 0xff, 0xfe, 0x4a, 0x1f, 0xcd, 0x7f, 0x00,
+        0xb8, 0x4d, 0x5b, 0x81, 0x01, 0x7f, 0x11, 0x83, 0xff, 0xfe,
+        0x00, 0x00, 0x00, 0x00,
+        0x00, 0x96, 0xae, 0x8d, 0x44, 0x30, 0x22, 0x17, 0x0f, 0x7d,
+    ];
+
+    #[test]
+    fn a_spectral_record_of_a_real_file_is_understood() {
+        let nine = Components::in_order(9);
+        let r = Layout::V561.decode(&SPECTRAL, &nine);
+        assert!(r.is_plausible() && r.further.len() == 2);
+        assert!((r.position - DVec3::new(0.939_610, 1.449_589, 0.0)).length() < 1e-6);
+        assert!((r.rotation[0] + 1.120_278).abs() < 1e-6 && (r.gradient[1] - 0.579_096).abs() < 1e-6);
+        let mantissas: Vec<f32> = nine.of(&r).map(|c| c * 2048.0 - 0.5).collect();
+        assert_eq!(mantissas, [0.0, 150.0, 174.0, 141.0, 68.0, 48.0, 34.0, 23.0, 15.0]);
+        assert_eq!(Layout::V561.encode(&r, &nine), SPECTRAL);
+        // The same in another order, with a channel that repeats another's component.
+        let places = vec![(1, 0), (0, 0), (2, 0), (3, 0), (0, 1), (1, 1), (2, 1), (0, 2), (1, 2)];
+        let passes = vec![[1, 4, 7], [0, 5, 8], [2, 6, 8], [3, 6, 8]];
+        let turns = Components::new(places, passes).unwrap();
+        let r = Layout::V561.decode(&SPECTRAL, &turns);
+        assert_eq!(r.of_pass(3), Rgb::new(141.5, 34.5, 15.5) / 2048.0);
+        assert_eq!(Layout::V561.encode(&r, &turns), SPECTRAL);
+        assert_eq!(r.quantised(&turns), r);
+        // A single pass keeps a component of each channel, and gives it to all.
+        let one = Components::new([0, 0, 0, 0, 1, 1, 1, 2, 2].map(|c| (0, c)).into(), vec![[2, 4, 7]]).unwrap();
+        let r = Layout::V561.decode(&SPECTRAL, &one);
+        assert_eq!(r.value, Rgb::new(174.5, 68.5, 23.5) / 2048.0);
+        assert_eq!(Layout::V561.encode(&r, &one)[63..], [174, 174, 174, 174, 68, 68, 68, 23, 23, 0x7d]);
     }
 
     fn direction() -> impl Strategy<Value = DVec3> {
@@ -150,7 +209,7 @@ mod tests {
             let u = normal.cross(other).normalize_or(normal.any_orthonormal_vector());
             Record {
                 position: position.into(), normal, u, level, weight, radii: [r0, r0 * ratio], gradient, rotation,
-                corral, value: value.into(),
+                corral, value: value.into(), further: Box::default(),
             }
         }
     }
@@ -159,8 +218,8 @@ mod tests {
         #[test]
         fn what_is_written_is_read(r in record(), old: bool) {
             let layout = if old { Layout::V559 } else { Layout::V561 };
-            let bytes = layout.encode(&r);
-            let back = layout.decode(&bytes);
+            let bytes = layout.encode(&r, &rgb());
+            let back = layout.decode(&bytes, &rgb());
             prop_assert!(back.is_plausible());
             prop_assert!((back.position - r.position).length() <= 2e-9 * r.position.length());
             prop_assert!(back.normal.dot(r.normal) > 1.0 - 1e-8 && back.u.dot(r.u) > 1.0 - 1e-8);
@@ -172,8 +231,8 @@ mod tests {
             }
             prop_assert!((back.value - r.value).abs().max_element() <= r.value.max_element() / 128.0);
             // Once quantised, nothing changes any more.
-            prop_assert_eq!(layout.decode(&layout.encode(&back)).value, back.value);
-            prop_assert_eq!(layout.decode(&layout.encode(&back)).position, back.position);
+            prop_assert_eq!(layout.decode(&layout.encode(&back, &rgb()), &rgb()).value, back.value);
+            prop_assert_eq!(layout.decode(&layout.encode(&back, &rgb()), &rgb()).position, back.position);
         }
 
         #[test]
@@ -182,7 +241,7 @@ mod tests {
             all[..32].copy_from_slice(&bytes);
             all[32..64].copy_from_slice(&rest);
             for layout in [Layout::V559, Layout::V561] {
-                let _ = layout.decode(&all).is_plausible();
+                let _ = layout.decode(&all, &rgb()).is_plausible();
             }
         }
     }

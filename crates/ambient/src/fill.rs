@@ -17,7 +17,7 @@ use crate::select::{CAP, Selection, select};
 use crate::store::Store;
 use ambit_base::{Rgb, hash_bits, hash_point};
 
-/// Misses that are resolved together; later windows profit from the records of earlier ones.
+/// Misses of a pass that are resolved together; later windows profit from the records of earlier ones.
 const WINDOW: usize = 4096;
 /// Picks of the first round; later rounds have twice as many up to [`CAP`]. Where the records of one level are few,
 /// those of a round see only the few below them and share their noise: records that come one after the other also see
@@ -35,9 +35,10 @@ impl Cache {
         let mut levels: Vec<u8> = misses.iter().map(|m| m.query.level).collect();
         levels.sort_unstable();
         levels.dedup();
+        let window = WINDOW * usize::from(self.params.passes.max(1));
         for level in levels {
             let at: Vec<usize> = (0..misses.len()).filter(|&k| misses[k].query.level == level).collect();
-            for (number, window) in at.chunks(WINDOW).enumerate() {
+            for (number, window) in at.chunks(window).enumerate() {
                 self.window(sampler, misses, level, window, number > 0, &mut values);
             }
         }
@@ -129,7 +130,8 @@ impl Cache {
             if let Some(reuse) = &mut self.reuse {
                 let own = picks.iter().zip(&outcomes).filter(|(_, o)| matches!(o, Outcome::Record(..)));
                 own.for_each(|(&q, _)| reuse.made(&queries[q]));
-                let others = open.iter().zip(&found).filter(|(_, f)| f.is_some());
+                // What is asked in several passes is one question.
+                let others = open.iter().zip(&found).filter(|(q, f)| f.is_some() && queries[**q].pass == 0);
                 others.for_each(|(&q, _)| reuse.served(&queries[q]));
             }
             open = settle(&open, &found, &mut values);
@@ -183,18 +185,18 @@ impl Cache {
         let mut delta = self.store.emptied();
         let first = self.records().len();
         for (&q, outcome) in picks.iter().zip(outcomes) {
-            values[q] = match *outcome {
+            values[q] = match outcome {
                 Outcome::Record(record, value) => {
                     let sum = delta.lookup(&self.limits, sampler, &queries[q]);
                     let covered = sum.answer().is_some() && sum.is_enough(self.params.enough(record.level));
-                    if !covered && self.insert(record) {
-                        delta.insert(&record, self.params.accuracy);
+                    if !covered && self.insert(record.clone()) {
+                        delta.insert(record, self.params.accuracy);
                     }
-                    value
+                    *value
                 }
                 Outcome::Once(value) => {
                     self.statistics.unstored += 1;
-                    value
+                    *value
                 }
                 Outcome::Nothing => fallback,
             };

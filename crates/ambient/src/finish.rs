@@ -1,6 +1,7 @@
 //! From the samples of a hemisphere to a record: mean, gradients, radii, corral.
 
 use crate::classical;
+use crate::components::Components;
 use crate::corral::{border, corral};
 use crate::derivatives::Derivatives;
 use crate::edges::Points;
@@ -41,7 +42,7 @@ pub(crate) struct Cell {
 }
 
 /// What a hemisphere came to.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Outcome {
     /// A record, and its answer to the query that asked.
     Record(Record, Rgb),
@@ -61,13 +62,28 @@ impl Outcome {
     }
 
     /// The record as an ambient file returns it, and its answer.
-    pub(crate) fn quantised<O>(self, query: &Query<O>) -> Self {
+    pub(crate) fn quantised<O>(self, query: &Query<O>, components: &Components) -> Self {
         match self {
             Self::Record(record, _) => {
-                let record = record.quantised();
-                Self::Record(record, answer(&record, query))
+                let record = record.quantised(components);
+                let answer = answer(&record, query);
+                Self::Record(record, answer)
             }
             other => other,
+        }
+    }
+
+    /// What all passes together have come to, with the value of each.
+    pub(crate) fn by_pass<O>(self, query: &Query<O>, mut values: impl ExactSizeIterator<Item = Rgb>) -> Self {
+        match self {
+            Self::Record(mut record, _) => {
+                record.value = values.next().unwrap_or_default();
+                record.further = values.collect();
+                let answer = answer(&record, query);
+                if record.is_plausible() { Self::Record(record, answer) } else { Self::Once(answer) }
+            }
+            Self::Once(_) => Self::Once(values.nth(usize::from(query.pass)).unwrap_or_default()),
+            Self::Nothing => Self::Nothing,
         }
     }
 }
@@ -93,22 +109,20 @@ pub(crate) fn once<O>(query: &Query<O>, plan: &Hemisphere, cells: &[Cell]) -> Ou
 /// Turns cells into a record.
 pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, cells: &[Cell]) -> Outcome {
     let grid = plan.grid();
-    let share = 1.0 / cells.len() as f64;
     let taken = cells.iter().filter(|c| c.distance > 0.0).count();
     if taken == 0 {
         return Outcome::Nothing;
     }
-    let sum: DVec3 = cells.iter().filter(|c| c.distance > 0.0).map(|c| c.radiance.as_dvec3()).sum();
-    let value = (sum * share).as_vec3();
+    let value = mean(cells.iter());
     if taken < cells.len() {
         return Outcome::Once(value);
     }
     let weight = limits.record_weight(query.level, query.weight);
-    let mean = value.mean();
-    let lit = f64::from(mean) > BLACK;
+    let bright = value.mean();
+    let lit = (f64::from(bright) > BLACK).then_some(bright);
     let (shape, rotation) = match grid {
-        Grid::Disk { .. } => curved(limits, weight, plan, cells, lit.then_some(mean)),
-        Grid::Polar { .. } => split(limits, weight, grid, cells, lit.then_some(mean)),
+        Grid::Disk { .. } => curved(limits, weight, plan, cells, lit),
+        Grid::Polar { .. } => split(limits, weight, grid, cells, lit),
     };
     let rotation = turned(rotation, shape.turn);
     let reach = shape.radii.map(|r| r * limits.accuracy);
@@ -126,8 +140,21 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
         rotation: rotation.map(|h| h as f32),
         corral: corral(grid, |c| plan.local(c), |c| cells[c].nearness, reach, shape.turn),
         value,
+        further: Box::default(),
     };
-    if record.is_plausible() { Outcome::Record(record, answer(&record, query)) } else { Outcome::Once(value) }
+    if record.is_plausible() {
+        let answer = answer(&record, query);
+        Outcome::Record(record, answer)
+    } else {
+        Outcome::Once(value)
+    }
+}
+
+/// Mean radiance of the cells, those whose samples were refused being black.
+pub(crate) fn mean<'c>(cells: impl ExactSizeIterator<Item = &'c Cell>) -> Rgb {
+    let share = 1.0 / cells.len() as f64;
+    let sum: DVec3 = cells.filter(|c| c.distance > 0.0).map(|c| c.radiance.as_dvec3()).sum();
+    (sum * share).as_vec3()
 }
 
 /// The ellipse of the Hessian and the rotational gradient of a hemisphere of the given mean radiance; none in the dark.
@@ -177,11 +204,12 @@ fn harmonic(cells: &[Cell], limits: &Limits, weight: f32) -> Ellipse {
 
 /// What a record answers at its own place, for a shading normal that textures may have turned.
 pub(crate) fn answer<O>(record: &Record, query: &Query<O>) -> Rgb {
+    let value = record.of_pass(query.pass);
     if query.normal.dot(query.shading) >= UNTEXTURED {
-        return record.value;
+        return value;
     }
     let turn = record.normal.cross(query.shading);
     let [hu, hv] = record.rotation.map(f64::from);
     let factor = 1.0 + turn.dot(record.u) * hu + turn.dot(record.v()) * hv;
-    record.value * (factor as f32).clamp(MIN_FACTOR, MAX_FACTOR)
+    value * (factor as f32).clamp(MIN_FACTOR, MAX_FACTOR)
 }

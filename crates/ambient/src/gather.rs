@@ -4,14 +4,15 @@ use crate::cache::Cache;
 use crate::sampler::{Miss, Query, Sample, SampleRay, Sampler};
 use crate::steps::Chain;
 use ambit_base::Rgb;
+use std::ops::Range;
 
 /// Samples one task traces: few enough that no core waits long for the last.
 const CHUNK: usize = 16;
 
-/// What samples brought back, in order.
+/// What samples brought back, in order, each in all passes.
 pub(crate) struct Sampled<O> {
     pub(crate) returned: Vec<Option<Sample>>,
-    /// Of each miss, the sample it belongs to.
+    /// Of each miss, the place in `returned` that it belongs to.
     pub(crate) owners: Vec<u32>,
     pub(crate) misses: Vec<Miss<O>>,
     /// Samples that were no light: negative or undefined.
@@ -25,28 +26,32 @@ impl<O> Sampled<O> {
     }
 }
 
-/// Traces so many samples of a query's hemisphere; `ray` gives each one's ray.
+/// Traces so many samples of a query's hemisphere in some passes; `ray` gives each one's ray.
 pub(crate) fn trace<S: Sampler>(
     cache: &Cache,
     sampler: &S,
     query: &Query<S::Origin>,
-    count: usize,
+    (count, passes): (usize, Range<u8>),
     chain: &mut Chain,
     ray: impl Fn(usize) -> SampleRay + Sync + Send,
 ) -> Sampled<S::Origin> {
     let parts = chain.in_order(count.div_ceil(CHUNK), 1, |task| {
         let samples = task * CHUNK..count.min((task + 1) * CHUNK);
-        let mut part = Sampled::with_capacity(samples.len(), 0);
+        let mut part = Sampled::with_capacity(samples.len() * passes.len(), 0);
         let mut scratch = sampler.scratch();
         for sample in samples {
-            let returned = sampler.sample(&mut scratch, cache, query, ray(sample), &mut part.misses);
-            let index = part.returned.len() as u32;
-            part.owners.resize(part.misses.len(), index);
-            part.returned.push(returned.map(|s| repair(s, &mut part.repaired)));
+            let mut ray = ray(sample);
+            for pass in passes.clone() {
+                ray.pass = pass;
+                let returned = sampler.sample(&mut scratch, cache, query, &ray, &mut part.misses);
+                let index = part.returned.len() as u32;
+                part.owners.resize(part.misses.len(), index);
+                part.returned.push(returned.map(|s| repair(s, &mut part.repaired)));
+            }
         }
         part
     });
-    let mut all = Sampled::with_capacity(count, parts.iter().map(|p| p.misses.len()).sum());
+    let mut all = Sampled::with_capacity(count * passes.len(), parts.iter().map(|p| p.misses.len()).sum());
     for part in parts {
         let base = all.returned.len() as u32;
         all.owners.extend(part.owners.iter().map(|o| o + base));

@@ -148,7 +148,7 @@ impl Hemisphere {
 
     /// The ray of a sample.
     pub(crate) fn ray(&self, direction: DVec3, sample: usize) -> SampleRay {
-        SampleRay { direction, weight: self.child_weight, stream: self.stream(sample) }
+        SampleRay { direction, weight: self.child_weight, stream: self.stream(sample), pass: 0 }
     }
 
     /// The random numbers of a sample's ray.

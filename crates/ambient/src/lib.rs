@@ -22,6 +22,7 @@ mod cache;
 mod clamping;
 mod classical;
 mod codec;
+mod components;
 mod corral;
 mod derivatives;
 mod edges;
@@ -52,6 +53,7 @@ mod tilt;
 
 pub use cache::{Cache, Statistics};
 pub use codec::{Layout, RECORD_BYTES};
+pub use components::Components;
 pub use file::{AmbientFile, Contents, FORMAT, FileError, Opened, Opening, PATIENCE, Reuse, scan, scan_header};
 pub use file::{Comparison, Fingerprint, Gravity, Mark, MarkLine, fingerprint_lines};
 pub use file::{Segment, missing, remove_done, segments};

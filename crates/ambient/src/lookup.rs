@@ -89,12 +89,14 @@ impl Sum {
 }
 
 /// Adds one record to the sum, returning its weight; 0 if it does not qualify. Level and weight are tested by the caller.
+/// `value` is its value in the pass that asks.
 #[inline]
 pub(crate) fn accumulate<S: Sampler>(
     asked: &Asked,
     angle: f32,
     place: &Place,
     derived: &Derived,
+    value: &Rgb,
     sampler: &S,
     query: &Query<S::Origin>,
     sum: &mut Sum,
@@ -136,16 +138,15 @@ pub(crate) fn accumulate<S: Sampler>(
     let [gu, gv] = derived.gradient;
     let [hu, hv] = derived.rotation;
     let factor = 1.0 + du * gu + dv * gv + turn.dot(u) * hu + turn.dot(v) * hv;
-    let value = Rgb::from_array(derived.value);
     if factor <= MIN_FACTOR {
         if d2 < asked.spare_reach * asked.spare_reach && sum.spare.is_none_or(|(nearest, _)| d2 < nearest) {
-            sum.spare = Some((d2, value * MIN_FACTOR));
+            sum.spare = Some((d2, *value * MIN_FACTOR));
         }
         return 0.0;
     }
     let weight = (1.0 - tilt2.sqrt() / angle) * (1.0 - reach2.sqrt() / asked.accuracy);
     sum.weight += weight;
-    sum.value += value * (factor.min(MAX_FACTOR) * weight);
+    sum.value += *value * (factor.min(MAX_FACTOR) * weight);
     weight
 }
 

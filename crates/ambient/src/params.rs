@@ -38,6 +38,8 @@ pub struct Params {
     /// reach from each other, where picks far apart leave gaps of up to twice that: 0.2 makes about as many. More
     /// than [`MOST_OVERLAP`] counts as that.
     pub overlap: f32,
+    /// Passes of a calculation by wavelength, at least 1: colours of a record.
+    pub passes: u8,
     /// Names the set of random numbers; two runs with equal seeds agree in every bit.
     pub seed: u64,
     /// Systems beyond Radiance's, all off here.
@@ -80,6 +82,7 @@ impl Default for Params {
             weight: 0,
             min_weight: 1e-4,
             overlap: 0.0,
+            passes: 1,
             seed: 0,
             systems: Systems::default(),
         }

@@ -1,12 +1,13 @@
 //! One record of the cache: irradiance at a point, its derivatives, and where it may be reused.
 
 use crate::codec::Layout;
+use crate::components::Components;
 use ambit_base::{DVec3, Rgb};
 
 /// Irradiance at a point of a surface, with first derivatives and an ellipse of validity.
 ///
 /// `u` and `v = normal × u` span the tangent plane; pairs of numbers are components along them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     /// The point, scene units.
     pub position: DVec3,
@@ -28,6 +29,8 @@ pub struct Record {
     pub corral: u32,
     /// Irradiance/π: the cosine-weighted mean radiance, W/(sr·m²).
     pub value: Rgb,
+    /// The same in the further passes of a calculation by wavelength; none without.
+    pub further: Box<[Rgb]>,
 }
 
 /// Bounds of plausible numbers in records (Radiance's "infinite").
@@ -49,12 +52,22 @@ impl Record {
             && self.radii.iter().all(|&r| radius(r))
             && self.radii[0] <= self.radii[1] * (1.0 + 1e-6) + 1e-6
             && self.gradient.iter().chain(&self.rotation).all(|&g| below(g))
-            && self.value.to_array().iter().all(|&c| c >= 0.0 && below(c))
+            && self.values().all(|v| v.to_array().iter().all(|&c| c >= 0.0 && below(c)))
     }
 
-    /// The record as an ambient file would return it.
-    pub fn quantised(&self) -> Self {
-        Layout::CURRENT.decode(&Layout::CURRENT.encode(self))
+    /// The record as an ambient file of such components would return it.
+    pub fn quantised(&self, components: &Components) -> Self {
+        Layout::CURRENT.decode(&Layout::CURRENT.encode(self, components), components)
+    }
+
+    /// Irradiance/π in each pass.
+    pub fn values(&self) -> impl Iterator<Item = Rgb> {
+        std::iter::once(self.value).chain(self.further.iter().copied())
+    }
+
+    /// Irradiance/π in a pass; black in one that the record knows nothing of.
+    pub fn of_pass(&self, pass: u8) -> Rgb {
+        if pass == 0 { self.value } else { self.further.get(usize::from(pass) - 1).copied().unwrap_or_default() }
     }
 
     /// The second tangent, `normal × u`.

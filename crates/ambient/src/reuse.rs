@@ -42,6 +42,8 @@ struct Count {
 #[derive(Clone, Debug)]
 pub(crate) struct Reuse {
     edge: f64,
+    /// Passes of a record, of which a hemisphere that is not kept has but one.
+    passes: u64,
     cells: HashMap<Cell, Count>,
 }
 
@@ -50,8 +52,8 @@ type Cell = ([i64; 3], u8);
 
 impl Reuse {
     /// Nothing counted yet.
-    pub(crate) fn new(limits: &Limits) -> Self {
-        Self { edge: limits.edge / CELLS, cells: HashMap::new() }
+    pub(crate) fn new(limits: &Limits, passes: u8) -> Self {
+        Self { edge: limits.edge / CELLS, passes: u64::from(passes.max(1)), cells: HashMap::new() }
     }
 
     fn cell<O>(&self, query: &Query<O>) -> Cell {
@@ -80,9 +82,10 @@ impl Reuse {
             return false;
         }
         let cell = self.cell(query);
+        let most = RENT * self.passes;
         let Some(count) = self.cells.get_mut(&cell) else { return false };
         let hardly = count.settled >= LEAST && count.made > count.settled / 2;
-        let rents = hardly && count.rented < RENT * count.made;
+        let rents = hardly && count.rented < most * count.made;
         count.rented += u64::from(rents);
         rents
     }
@@ -96,11 +99,11 @@ mod tests {
 
     fn query(x: f64, level: u8) -> Query<()> {
         let position = DVec3::new(x, 0.1, 0.1);
-        Query { position, normal: DVec3::Z, shading: DVec3::Z, weight: 1.0, level, origin: () }
+        Query { position, normal: DVec3::Z, shading: DVec3::Z, weight: 1.0, level, pass: 0, origin: () }
     }
 
     fn empty() -> Reuse {
-        Reuse::new(&Limits::new(&Params::default(), 1.0))
+        Reuse::new(&Limits::new(&Params::default(), 1.0), 1)
     }
 
     #[test]

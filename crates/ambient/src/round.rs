@@ -6,7 +6,7 @@
 
 use crate::cache::Cache;
 use crate::fill::key;
-use crate::finish::{Cell, Outcome, finish, least_distance, once};
+use crate::finish::{Cell, Outcome, finish, least_distance, mean, once};
 use crate::gather::{Sampled, trace};
 use crate::hemisphere::Hemisphere;
 use crate::params::Limits;
@@ -15,6 +15,8 @@ use crate::sampler::{Query, Sample, Sampler};
 use crate::steps::Chain;
 use crate::supersample::{allocate, budget};
 use ambit_base::{Colour, Rgb, Stream, Vec3};
+use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Whether hemispheres are to become records.
@@ -36,7 +38,7 @@ enum State<O> {
 /// A hemisphere whose last samples missed the cache.
 struct Waiting<O> {
     plan: Hemisphere,
-    /// Nothing while it waits for its first samples; then its cells, and where the extra ones belong.
+    /// Nothing while it waits for its first samples; then its cells in all passes, and where the extra ones belong.
     before: Option<(Vec<Cell>, Vec<Extra>)>,
     sampled: Sampled<O>,
 }
@@ -91,7 +93,7 @@ impl Cache {
                 let k = waiting[i];
                 match &states[k] {
                     State::Waiting(hemisphere) => next.go_on(&queries[chosen[k]], hemisphere, chain),
-                    State::Done(outcome) => State::Done(*outcome),
+                    State::Done(outcome) => State::Done(outcome.clone()),
                 }
             });
             for (k, state) in waiting.into_iter().zip(went) {
@@ -124,10 +126,10 @@ impl<S: Sampler> Round<'_, S> {
         };
         // A cache without divisions ends before this.
         let Some(plan) = plan else { return State::Done(Outcome::Nothing) };
-        let sampled = trace(self.cache, self.sampler, query, plan.len(), chain, |sample| {
-            plan.ray(plan.direction(sample), sample)
-        });
-        self.count(&sampled);
+        let wanted = (plan.len(), self.passes(query));
+        let sampled =
+            trace(self.cache, self.sampler, query, wanted, chain, |sample| plan.ray(plan.direction(sample), sample));
+        self.count(plan.len(), &sampled);
         if sampled.misses.is_empty() {
             self.extend(query, plan, &sampled.returned, chain)
         } else {
@@ -154,16 +156,18 @@ impl<S: Sampler> Round<'_, S> {
     ) -> State<S::Origin> {
         let least = least_distance(&self.cache.limits);
         let cells: Vec<Cell> = returned.iter().map(|r| cell(*r, least)).collect();
-        let extras = if self.kept == Kept::Yes { self.extras(query, &plan, &cells) } else { Vec::new() };
+        let extras =
+            if self.kept == Kept::Yes { self.extras(query, &plan, &together(&cells, plan.len())) } else { Vec::new() };
         if extras.is_empty() {
             return State::Done(self.finish(query, &plan, &cells));
         }
-        let sampled = trace(self.cache, self.sampler, query, extras.len(), chain, |sample| {
+        let wanted = (extras.len(), self.passes(query));
+        let sampled = trace(self.cache, self.sampler, query, wanted, chain, |sample| {
             let (cell, k) = extras[sample];
             let direction = plan.frame().to_world(plan.extra_local(cell, k));
             plan.ray(direction, plan.len() + sample)
         });
-        self.count(&sampled);
+        self.count(extras.len(), &sampled);
         if sampled.misses.is_empty() {
             State::Done(self.refine(query, &plan, cells, &extras, &sampled.returned))
         } else {
@@ -194,16 +198,20 @@ impl<S: Sampler> Round<'_, S> {
         returned: &[Option<Sample>],
     ) -> Outcome {
         let least = least_distance(&self.cache.limits);
-        let mut returned = returned.iter();
+        let passes = self.passes(query).len();
+        let mut returned = returned;
         for run in extras.chunk_by(|a, b| a.0 == b.0) {
-            let cell = &mut cells[run[0].0];
-            let (mut sum, mut count) = (cell.radiance, 1.0);
-            for sample in returned.by_ref().take(run.len()).flatten() {
-                sum += sample.radiance;
-                count += 1.0;
-                cell.nearness = cell.nearness.max(1.0 / sample.distance.max(least));
+            let (own, rest) = returned.split_at(run.len() * passes);
+            returned = rest;
+            for (pass, cell) in cells[run[0].0 * passes..][..passes].iter_mut().enumerate() {
+                let (mut sum, mut count) = (cell.radiance, 1.0);
+                for sample in own.iter().skip(pass).step_by(passes).flatten() {
+                    sum += sample.radiance;
+                    count += 1.0;
+                    cell.nearness = cell.nearness.max(1.0 / sample.distance.max(least));
+                }
+                cell.radiance = sum / count;
             }
-            cell.radiance = sum / count;
         }
         self.finish(query, plan, &cells)
     }
@@ -212,14 +220,40 @@ impl<S: Sampler> Round<'_, S> {
         if self.kept == Kept::No {
             return once(query, plan, cells);
         }
-        let outcome = finish(&self.cache.limits, query, plan, cells);
-        if self.cache.quantised { outcome.quantised(query) } else { outcome }
+        let mut outcome = finish(&self.cache.limits, query, plan, &together(cells, plan.len()));
+        let passes = cells.len() / plan.len();
+        if passes > 1 {
+            outcome = outcome.by_pass(query, (0..passes).map(|pass| mean(cells.iter().skip(pass).step_by(passes))));
+        }
+        match &self.cache.quantised {
+            Some(components) => outcome.quantised(query, components),
+            None => outcome,
+        }
     }
 
-    fn count(&self, sampled: &Sampled<S::Origin>) {
-        self.samples.fetch_add(sampled.returned.len() as u64, Relaxed);
+    /// The passes that a hemisphere's samples are traced in: all that a record has values of, or the one that asks.
+    fn passes(&self, query: &Query<S::Origin>) -> Range<u8> {
+        match self.kept {
+            Kept::Yes => 0..self.cache.params.passes.max(1),
+            Kept::No => query.pass..query.pass + 1,
+        }
+    }
+
+    fn count(&self, samples: usize, sampled: &Sampled<S::Origin>) {
+        self.samples.fetch_add(samples as u64, Relaxed);
         self.repaired.fetch_add(sampled.repaired, Relaxed);
     }
+}
+
+/// The `count` cells by which extra samples, derivatives and radii are decided: the mean of each over all passes, which
+/// follow each other cell by cell.
+fn together(cells: &[Cell], count: usize) -> Cow<'_, [Cell]> {
+    if cells.len() == count {
+        return Cow::Borrowed(cells);
+    }
+    let passes = cells.len() / count;
+    let mean = |all: &[Cell]| Cell { radiance: all.iter().map(|c| c.radiance).sum::<Rgb>() / passes as f32, ..all[0] };
+    cells.chunks(passes).map(mean).collect()
 }
 
 /// The cell of a first sample.

@@ -18,6 +18,8 @@ pub struct Query<O> {
     pub weight: f32,
     /// The number of hemispheres open on the path, 0 at the eye.
     pub level: u8,
+    /// The pass of a calculation by wavelength that asks, 0 if there is but one.
+    pub pass: u8,
     /// The user's.
     pub origin: O,
 }
@@ -51,6 +53,8 @@ pub struct SampleRay {
     pub weight: f32,
     /// Its random numbers.
     pub stream: Stream,
+    /// The pass of a calculation by wavelength whose radiance is wanted, and that asks what the ray asks.
+    pub pass: u8,
 }
 
 /// Traces rays for the cache.
@@ -76,7 +80,7 @@ pub trait Sampler: Sync {
         scratch: &mut Self::Scratch<'_>,
         cache: &Cache,
         query: &Query<Self::Origin>,
-        ray: SampleRay,
+        ray: &SampleRay,
         misses: &mut Vec<Miss<Self::Origin>>,
     ) -> Option<Sample>;
 

@@ -42,7 +42,7 @@ pub(crate) struct Place {
 pub(crate) struct Derived {
     pub(crate) gradient: [f32; 2],
     pub(crate) rotation: [f32; 2],
-    pub(crate) value: [f32; 3],
+    pub(crate) value: Rgb,
     pub(crate) corral: u32,
 }
 
@@ -62,12 +62,7 @@ impl Place {
 
 impl Derived {
     fn of(record: &Record) -> Self {
-        Self {
-            gradient: record.gradient,
-            rotation: record.rotation,
-            value: record.value.to_array(),
-            corral: record.corral,
-        }
+        Self { gradient: record.gradient, rotation: record.rotation, value: record.value, corral: record.corral }
     }
 }
 
@@ -89,6 +84,9 @@ pub(crate) struct Store {
     nodes: Vec<Node>,
     places: Vec<Place>,
     derived: Vec<Derived>,
+    /// Values in further passes, so many a record.
+    further: Vec<Rgb>,
+    further_passes: usize,
     /// The lists, each a run of blocks.
     blocks: Vec<Block>,
     /// Runs given up by lists that grew: entry k holds the starts of those of 2^k blocks.
@@ -96,14 +94,16 @@ pub(crate) struct Store {
 }
 
 impl Store {
-    /// An empty tree over the cube with the given low corner and edge.
-    pub(crate) fn new(corner: DVec3, edge: f64) -> Self {
+    /// An empty tree over the cube with the given low corner and edge, of records with values in so many passes.
+    pub(crate) fn new(corner: DVec3, edge: f64, passes: u8) -> Self {
         Self {
             corner,
             edge,
             nodes: vec![Node::default()],
             places: Vec::new(),
             derived: Vec::new(),
+            further: Vec::new(),
+            further_passes: usize::from(passes.max(1)) - 1,
             blocks: Vec::new(),
             vacant: Vec::new(),
         }
@@ -111,7 +111,7 @@ impl Store {
 
     /// An empty tree over the same cube.
     pub(crate) fn emptied(&self) -> Self {
-        Self::new(self.corner, self.edge)
+        Self::new(self.corner, self.edge, self.further_passes as u8 + 1)
     }
 
     /// Files a record in the cells of its reach. False if an equal one is there already.
@@ -129,6 +129,7 @@ impl Store {
         let id = self.places.len() as u32;
         self.places.push(place);
         self.derived.push(Derived::of(record));
+        self.further.extend((0..self.further_passes).map(|k| record.of_pass(k as u8 + 1)));
         // Cells are found by halving in look-ups and by division here: the margin covers the difference.
         let margin = DVec3::splat(reach * (1.0 + MARGIN) + self.edge * MARGIN);
         let last = (1u64 << depth) - 1;
@@ -160,6 +161,15 @@ impl Store {
     /// Lowers the radii of a record, the so-manieth inserted. It stays listed where it was: a little to search, nothing wrong.
     pub(crate) fn shrink(&mut self, id: u32, radii: [f32; 2]) {
         self.places[id as usize].inverse_radii = radii.map(f32::recip);
+    }
+
+    /// What a record answers in a pass at its own place.
+    #[inline]
+    fn value(&self, id: usize, pass: u8) -> &Rgb {
+        match pass {
+            0 => &self.derived[id].value,
+            _ => &self.further[id * self.further_passes + usize::from(pass) - 1],
+        }
     }
 
     /// True if the cell at `depth` around a record lists one like it.
@@ -313,7 +323,8 @@ impl Store {
                     break;
                 }
                 let mut sum = Sum::EMPTY;
-                let own = accumulate(&asked, angle, place, &self.derived[id as usize], sampler, query, &mut sum);
+                let (derived, value) = (&self.derived[id as usize], self.value(id as usize, query.pass));
+                let own = accumulate(&asked, angle, place, derived, value, sampler, query, &mut sum);
                 if own > 0.0 {
                     weight += own;
                     found.extend(sum.answer().map(|value| (own, value)));
@@ -371,7 +382,8 @@ impl<S: Sampler> Search<'_, S> {
                 if deeper || place.level == self.asked.level && place.weight < self.asked.least_weight {
                     return weight;
                 }
-                weight += accumulate(&self.asked, angle, place, &store.derived[id], self.sampler, self.query, sum);
+                let (derived, value) = (&store.derived[id], store.value(id, self.query.pass));
+                weight += accumulate(&self.asked, angle, place, derived, value, self.sampler, self.query, sum);
             }
         }
         weight

@@ -114,6 +114,7 @@ impl TextForm {
             level: level as u8,
             weight: numbers[10] as f32,
             radii: pair(11),
+            further: Box::default(),
             value: Rgb::new(numbers[13] as f32, numbers[14] as f32, numbers[15] as f32),
             gradient: pair(16),
             rotation: pair(18),
@@ -148,6 +149,7 @@ fn expect(word: &str, label: &str) -> Result<(), String> {
 mod tests {
     use super::*;
     use crate::codec::{Layout, RECORD_BYTES};
+    use crate::components::Components;
 
     /// Three records of a file of Radiance 6.0a and what its `lookamb` printed.
     #[rustfmt::skip]
@@ -210,7 +212,9 @@ mod tests {
 
     #[test]
     fn the_text_is_that_of_radiance() {
-        let text = |form: TextForm| -> String { BYTES.iter().map(|b| form.write(&Layout::V561.decode(b))).collect() };
+        let text = |form: TextForm| -> String {
+            BYTES.iter().map(|b| form.write(&Layout::V561.decode(b, &Components::default()))).collect()
+        };
         assert_eq!(text(TextForm::Tabular), TABULAR);
         assert_eq!(text(TextForm::Labelled), LABELLED);
     }
@@ -231,7 +235,7 @@ mod tests {
     #[test]
     fn reading_what_was_written_gives_the_same_bytes() {
         for bytes in BYTES {
-            let record = Layout::V561.decode(&bytes);
+            let record = Layout::V561.decode(&bytes, &Components::default());
             for form in [TextForm::Labelled, TextForm::Tabular] {
                 let text = form.write(&record);
                 let mut words = text.split_ascii_whitespace();

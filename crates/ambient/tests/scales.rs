@@ -126,6 +126,7 @@ fn first_order_interpolation_converges_with_the_number_of_records() {
                     rotation: [0.0; 2],
                     corral: 0,
                     value: Rgb::splat(value as f32),
+                    further: Box::default(),
                 }
             });
             assert_eq!(cache.load(records), 0);

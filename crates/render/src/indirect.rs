@@ -40,6 +40,7 @@ impl<O: Observer> Walk<'_, O> {
             shading,
             weight: ray.weight,
             level: ray.depth,
+            pass: self.pass,
             origin: Origin::of(ray, transmitted, coefficient.max_element().min(1.0)),
         };
         if O::ACTIVE {

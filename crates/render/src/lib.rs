@@ -2,6 +2,7 @@
 //! the irradiance cache.
 
 mod antimatter;
+mod braid;
 mod error;
 mod fingerprint;
 mod indirect;
@@ -34,6 +35,6 @@ pub use prepare::{Definition, Environment, Loaded, OctreeSource, load};
 pub use renderer::Renderer;
 pub use request::{Aim, Answer, Request};
 pub use sharing::Store;
-pub use spectral::{Efficiency, Spectra, Spectrum};
+pub use spectral::{Bins, Efficiency, Spectra, Spectrum};
 pub use statistics::Report;
-pub use tree::{Names, TreeRay};
+pub use tree::{Names, TreeRay, Visit};

@@ -46,33 +46,17 @@ pub struct Renderer {
     told: Vec<ambit_cal::Warning>,
     rays: u64,
     pub(crate) sharing: Option<Sharing>,
-    /// Which pass of a calculation by wavelength cache, tally and rays belong to.
-    pass: usize,
-    /// Caches, tallies and rays of the other passes.
-    waiting: Vec<(Cache, Tally, u64)>,
 }
 
 impl Renderer {
     /// Compiles `loaded` for `options`.
     pub fn new(loaded: Loaded, options: Options, environment: &Environment<'_>) -> Result<Self, Error> {
         let scene = Prepared::new(loaded, &options, environment)?;
-        let cache = || Cache::new(params(&options), scene.cube.origin, scene.cube.edge);
         let passes = if scene.modifiers.spectral() { options.spectrum.passes() } else { 1 };
+        let cache = Cache::new(params(&options, passes), scene.cube.origin, scene.cube.edge);
         let sources = scene.sources.len();
         let works = (0..=rayon::current_num_threads()).map(|_| Mutex::new(Work::new(sources))).collect();
-        let waiting = (1..passes).map(|_| (cache(), Tally::new(sources), 0)).collect();
-        Ok(Self {
-            cache: cache(),
-            scene,
-            options,
-            tally: Tally::new(sources),
-            works,
-            told: Vec::new(),
-            rays: 0,
-            sharing: None,
-            pass: 0,
-            waiting,
-        })
+        Ok(Self { cache, scene, options, tally: Tally::new(sources), works, told: Vec::new(), rays: 0, sharing: None })
     }
 
     /// Begins anew with an empty cache and other settings: the seed, and what trades time for error, which is `-aa -ad
@@ -85,13 +69,9 @@ impl Renderer {
         let (a, b) = (&mut own.ambient, &other.ambient);
         (a.accuracy, a.resolution) = (b.accuracy, b.resolution);
         (a.divisions, a.super_samples) = (b.divisions, b.super_samples);
-        let sources = self.scene.sources.len();
-        let begin = |cache: &mut Cache, tally: &mut Tally| {
-            *cache = Cache::new(params(&self.options), self.scene.cube.origin, self.scene.cube.edge);
-            *tally = Tally::new(sources);
-        };
-        begin(&mut self.cache, &mut self.tally);
-        self.waiting.iter_mut().for_each(|(cache, tally, _)| begin(cache, tally));
+        let cube = &self.scene.cube;
+        self.cache = Cache::new(params(&self.options, self.passes()), cube.origin, cube.edge);
+        self.tally = Tally::new(self.scene.sources.len());
     }
 
     /// As [`Renderer::trace`], by wavelength: the first pass's answers, and the spectra of all.
@@ -100,37 +80,24 @@ impl Renderer {
         requests: &[Request],
         notify: &dyn Notify,
     ) -> Result<(Vec<Answer>, Spectra), Error> {
-        let mut passes = Vec::with_capacity(self.passes());
-        for pass in 0..self.passes() {
-            self.turn_to(pass);
-            passes.push(self.trace(requests, notify)?);
-        }
-        self.turn_to(0);
+        let mut passes = self.trace_passes(requests, notify)?;
         let spectra = Spectra::gather(&self.options.spectrum, &passes);
         Ok((passes.swap_remove(0), spectra))
     }
 
     /// How many passes a calculation by wavelength takes in this scene.
     pub fn passes(&self) -> usize {
-        1 + self.waiting.len()
-    }
-
-    /// Brings a pass's cache and tally into their places, and lets those that were there wait.
-    fn turn_to(&mut self, pass: usize) {
-        for place in [self.pass, pass] {
-            // That of the first pass waits in no place of its own but in that of the pass that is on.
-            if let Some((cache, tally, rays)) = place.checked_sub(1).and_then(|i| self.waiting.get_mut(i)) {
-                std::mem::swap(&mut self.cache, cache);
-                std::mem::swap(&mut self.tally, tally);
-                std::mem::swap(&mut self.rays, rays);
-            }
-        }
-        self.pass = pass;
+        usize::from(self.cache.params().passes)
     }
 
     /// Answers `requests`, in order. Warnings (of the ambient file, of function files) go to `notify`.
     pub fn trace(&mut self, requests: &[Request], notify: &dyn Notify) -> Result<Vec<Answer>, Error> {
-        let mut answers = Vec::with_capacity(requests.len());
+        Ok(self.trace_passes(requests, notify)?.swap_remove(0))
+    }
+
+    /// The answers of all passes.
+    fn trace_passes(&mut self, requests: &[Request], notify: &dyn Notify) -> Result<Vec<Vec<Answer>>, Error> {
+        let mut answers: Vec<_> = (0..self.passes()).map(|_| Vec::with_capacity(requests.len())).collect();
         for batch in requests.chunks(BATCH) {
             let outcome = self.batch(batch, &mut answers);
             self.complain(notify);
@@ -140,39 +107,44 @@ impl Renderer {
         Ok(answers)
     }
 
-    fn batch(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Error> {
-        let tracer = Tracer {
-            scene: &self.scene,
-            options: &self.options,
-            tally: &self.tally,
-            works: &self.works,
-            pass: self.pass,
-        };
+    fn batch(&mut self, requests: &[Request], answers: &mut [Vec<Answer>]) -> Result<(), Error> {
+        let tracer = Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works };
         let cache = &self.cache;
+        let first = answers[0].len();
         let one = |request: &Request| {
             let mut misses = Vec::new();
             let mut work = tracer.work();
-            let answer =
-                Walk { tracer: &tracer, cache, work: &mut work, misses: &mut misses, observer: () }.answer(request);
-            (answer, misses)
+            let mut of_pass = |pass| {
+                let mut own = Vec::new();
+                let mut walk = Walk { tracer: &tracer, cache, work: &mut work, misses: &mut own, pass, observer: () };
+                let answer = walk.answer(request);
+                if misses.is_empty() {
+                    misses = own;
+                } else {
+                    misses.extend(own);
+                }
+                answer
+            };
+            let answer = of_pass(0);
+            let further: Vec<Answer> = (1..answers.len() as u8).map(of_pass).collect();
+            (answer, further, misses)
         };
-        let shaded: Vec<(Answer, Vec<Miss<Origin>>)> =
+        let shaded: Vec<(Answer, Vec<Answer>, Vec<Miss<Origin>>)> =
             cache.steps().in_order(requests.len(), PARALLEL_FROM, TOGETHER, |i| one(&requests[i]));
-        let first = answers.len();
         let mut misses = Vec::new();
         let mut owners = Vec::new();
-        for (i, (answer, own)) in shaded.into_iter().enumerate() {
-            answers.push(answer);
+        for (i, (answer, further, own)) in shaded.into_iter().enumerate() {
+            answers.iter_mut().zip(std::iter::once(answer).chain(further)).for_each(|(all, answer)| all.push(answer));
             owners.extend(std::iter::repeat_n(first + i, own.len()));
             misses.extend(own);
         }
         if !misses.is_empty() && !self.scene.fault.is_set() {
             let values = self.cache.resolve(&tracer, &misses);
             for ((miss, value), owner) in misses.iter().zip(values).zip(owners) {
-                answers[owner].value += miss.coefficient * value;
+                answers[usize::from(miss.query.pass)][owner].value += miss.coefficient * value;
             }
         }
-        for answer in &mut answers[first..] {
+        for answer in answers.iter_mut().flat_map(|all| &mut all[first..]) {
             answer.make_finite();
         }
         self.settle()
@@ -205,11 +177,6 @@ impl Renderer {
 
     /// Rays traced so far, in all passes.
     pub fn rays(&self) -> u64 {
-        self.rays + self.waiting.iter().map(|w| w.2).sum::<u64>()
-    }
-
-    /// Rays of the pass that is on; the first one between calls.
-    pub(crate) fn rays_of_pass(&self) -> u64 {
         self.rays
     }
 
@@ -235,7 +202,7 @@ impl Renderer {
 }
 
 /// What of the options the irradiance cache has to know.
-fn params(options: &Options) -> Params {
+fn params(options: &Options, passes: usize) -> Params {
     let a = &options.ambient;
     Params {
         bounces: a.bounces,
@@ -247,6 +214,7 @@ fn params(options: &Options) -> Params {
         weight: a.weight,
         min_weight: options.limits.weight,
         overlap: a.overlap,
+        passes: passes as u8,
         seed: options.seed,
         systems: a.systems,
     }

@@ -34,10 +34,13 @@ impl Renderer {
     /// Loads the records of an ambient file and shares new ones through it; creates it if absent.
     pub fn share(&mut self, store: &Store<'_>, notify: &dyn Notify) -> Result<(), Error> {
         let Store { path, header, fingerprint, reuse, owner } = *store;
-        let opening = Opening { header, fingerprint: Some(fingerprint), reuse, patience: PATIENCE, owner };
+        let components = &self.options.spectrum.components(self.passes());
+        let splits = self.options.spectrum.limits();
+        let fingerprint = Some(fingerprint);
+        let opening = Opening { header, components, splits, fingerprint, reuse, patience: PATIENCE, owner };
         let opened = AmbientFile::open(path, &opening, notify).map_err(|e| failed(&e))?;
         let cache = self.cache_mut();
-        cache.quantise(true);
+        cache.quantise(components.clone());
         cache.load(opened.records);
         let handed = cache.records().len();
         self.sharing = opened.file.map(|file| Sharing { file, handed, trouble: false });

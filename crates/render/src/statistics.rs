@@ -33,18 +33,15 @@ pub struct Report {
     pub filling: Duration,
     /// Look-ups and what they came to.
     pub observed: Observed,
-    /// What the same would take on other numbers of cores; not known of a calculation by wavelength.
+    /// What the same would take on other numbers of cores.
     pub parallelism: Option<Parallelism>,
 }
 
 impl Renderer {
-    /// Counts look-ups and measures time from now on; of a calculation by wavelength, those of the first pass. `wall` and
-    /// `own` are the time, and the processor time of the thread that asks.
+    /// Counts look-ups and measures time from now on. `wall` and `own` are the time, and the processor time of the thread that asks.
     pub fn measure(&mut self, wall: Clock, own: Clock) {
         self.cache_mut().observe(wall);
-        if self.passes() == 1 {
-            self.cache_mut().time_steps(wall, own);
-        }
+        self.cache_mut().time_steps(wall, own);
     }
 
     /// What it took since [`Renderer::measure`]; none if that was not called.
@@ -57,7 +54,7 @@ impl Renderer {
             *all -= loaded;
         }
         Some(Report {
-            rays: self.rays_of_pass(),
+            rays: self.rays(),
             made,
             loaded: loaded.clone(),
             samples: statistics.samples.clone(),

@@ -18,8 +18,6 @@ pub(crate) struct Tracer<'s> {
     pub(crate) options: &'s Options,
     pub(crate) tally: &'s Tally,
     pub(crate) works: &'s [Mutex<Work>],
-    /// Which pass of a calculation by wavelength this is.
-    pub(crate) pass: usize,
 }
 
 /// What a diffuse question carries so that the path can go on from it.
@@ -72,7 +70,7 @@ impl Tracer<'_> {
     pub(crate) fn hemisphere_ray(
         &self,
         query: &Query<Origin>,
-        SampleRay { direction, weight, stream }: SampleRay,
+        &SampleRay { direction, weight, stream, .. }: &SampleRay,
     ) -> Ray<'static> {
         let mut ray = query.origin.go_on(query.position, direction, stream);
         ray.level += i32::from(!query.origin.transmitted);
@@ -90,9 +88,10 @@ impl Tracer<'_> {
         work: &mut Work,
         cache: &Cache,
         query: &Query<Origin>,
-        sample: SampleRay,
+        sample: &SampleRay,
         misses: &mut Vec<Miss<Origin>>,
     ) -> Option<Sample> {
+        let pass = sample.pass;
         let mut ray = self.hemisphere_ray(query, sample);
         match ray.fate(true, &self.options.limits) {
             Fate::Alive => {}
@@ -101,7 +100,7 @@ impl Tracer<'_> {
             Fate::Refused => return None,
         }
         let first = misses.len();
-        let mut walk = Walk { tracer: self, cache, work, misses, observer: () };
+        let mut walk = Walk { tracer: self, cache, work, misses, pass, observer: () };
         walk.evaluate(&mut ray);
         let rest = walk.endless(first);
         let distance = ray.effective_length();
@@ -137,7 +136,7 @@ impl Sampler for Tracer<'_> {
         work: &mut MutexGuard<'_, Work>,
         cache: &Cache,
         query: &Query<Origin>,
-        sample: SampleRay,
+        sample: &SampleRay,
         misses: &mut Vec<Miss<Origin>>,
     ) -> Option<Sample> {
         self.follow(work, cache, query, sample, misses)

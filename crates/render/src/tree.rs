@@ -5,10 +5,12 @@
 //! sampled for it are followed again where the question was asked.
 
 use crate::Error;
+use crate::braid::braid;
 use crate::observer::Observer;
 use crate::ray::{Fate, Kinds, Ray};
 use crate::renderer::Renderer;
 use crate::request::{Answer, Request};
+use crate::spectral::{Bins, Spectra};
 use crate::tracer::{Origin, Tracer};
 use crate::walk::Walk;
 use crate::work::Work;
@@ -24,6 +26,9 @@ const MOST_ROUNDS: usize = 8;
 
 /// The names of objects.
 pub type Names<'n> = &'n dyn Fn(ObjectId) -> Cow<'n, str>;
+
+/// What is shown a ray, its bins and what finds names.
+pub type Visit<'v> = &'v mut dyn FnMut(&TreeRay, Option<Bins<'_>>, Names<'_>);
 
 /// A ray of a tree.
 #[derive(Clone, Copy, Debug)]
@@ -42,14 +47,14 @@ pub struct TreeRay {
 /// Shows rays as they finish.
 struct Watch<'v> {
     visit: &'v mut dyn FnMut(&TreeRay),
-    hemispheres: Hemispheres,
+    hemispheres: &'v mut Hemispheres,
 }
 
-/// The rays that were sent for questions to the cache, by what identifies a question.
+/// The rays that were sent for questions to the cache, by what identifies a question and the pass.
 type Hemispheres = HashMap<u64, Vec<SampleRay>>;
 
-fn key(query: &Query<Origin>) -> u64 {
-    hash_bits(&[hash_point(query.position), hash_point(query.normal), u64::from(query.level)])
+fn key(query: &Query<Origin>, pass: u8) -> u64 {
+    hash_bits(&[hash_point(query.position), hash_point(query.normal), u64::from(query.level), u64::from(pass)])
 }
 
 impl Observer for &mut Watch<'_> {
@@ -71,7 +76,7 @@ impl Observer for &mut Watch<'_> {
     }
 
     fn take_hemisphere(&mut self, query: &Query<Origin>) -> Option<Vec<SampleRay>> {
-        self.hemispheres.remove(&key(query))
+        self.hemispheres.remove(&key(query, query.pass))
     }
 }
 
@@ -120,11 +125,11 @@ impl Sampler for Noting<'_> {
         work: &mut MutexGuard<'_, Work>,
         cache: &Cache,
         query: &Query<Origin>,
-        ray: SampleRay,
+        ray: &SampleRay,
         misses: &mut Vec<Miss<Origin>>,
     ) -> Option<Sample> {
         let mut hemispheres = self.hemispheres.lock().unwrap_or_else(PoisonError::into_inner);
-        hemispheres.entry(key(query)).or_default().push(ray);
+        hemispheres.entry(key(query, ray.pass)).or_default().push(*ray);
         drop(hemispheres);
         self.tracer.follow(work, cache, query, ray, misses)
     }
@@ -136,24 +141,54 @@ impl Sampler for Noting<'_> {
 
 impl Renderer {
     /// Answers one request and shows every ray that follows from it to `visit` when it has finished, children before
-    /// parents, with what finds names. Serial.
+    /// parents, with what finds names; in a calculation by wavelength with its bins. Returns the bins of the answer, too.
+    /// Serial.
     pub fn trace_tree(
         &mut self,
         request: &Request,
         notify: &dyn Notify,
-        visit: &mut dyn FnMut(&TreeRay, Names<'_>),
-    ) -> Result<Answer, Error> {
+        visit: Visit<'_>,
+    ) -> Result<(Answer, Option<Spectra>), Error> {
         if self.options.ambient.unbounded {
             return Err(Error::user("trees of rays without a limit of bounces are not supported"));
         }
+        let mut hemispheres = self.hemispheres(request);
+        let (answer, spectra) = if self.options.spectrum.is_rgb() {
+            (self.show(request, 0, &mut hemispheres, &mut |ray, names| visit(ray, None, names)), None)
+        } else {
+            let passes = self.cache.params().passes;
+            let mut show = |pass| {
+                let mut rays = Vec::new();
+                let answer = self.show(request, pass, &mut hemispheres, &mut |ray, _| rays.push(*ray));
+                (vec![answer], rays)
+            };
+            let (answers, trees): (Vec<_>, Vec<_>) = (0..passes).map(&mut show).unzip();
+            let (rays, passes) = braid(trees);
+            let spectra = Spectra::of_tree(&self.options.spectrum, &passes);
+            for (i, ray) in rays.iter().enumerate() {
+                visit(ray, Some(spectra.bins(i)), &|id| self.name(id));
+            }
+            (answers[0][0], Some(Spectra::gather(&self.options.spectrum, &answers)))
+        };
+        self.complain(notify);
+        self.settle()?;
+        self.exchange(notify, false)?;
+        Ok((answer, spectra))
+    }
+
+    /// Has the cache learn what a request asks, and returns the rays of the hemispheres that this took.
+    fn hemispheres(&mut self, request: &Request) -> Hemispheres {
         let mut hemispheres = Hemispheres::new();
         for _ in 0..MOST_ROUNDS {
-            let tracer =
-                Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works, pass: 0 };
+            let tracer = Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works };
             let mut misses = Vec::new();
             let mut work = tracer.work();
-            Walk { tracer: &tracer, cache: &self.cache, work: &mut work, misses: &mut misses, observer: () }
-                .answer(request);
+            for pass in 0..self.cache.params().passes {
+                let mut own = Vec::new();
+                Walk { tracer: &tracer, cache: &self.cache, work: &mut work, misses: &mut own, pass, observer: () }
+                    .answer(request);
+                misses.append(&mut own);
+            }
             drop(work);
             if misses.is_empty() || self.scene.fault.is_set() {
                 break;
@@ -166,27 +201,29 @@ impl Renderer {
         for rays in hemispheres.values_mut() {
             rays.sort_by_key(|r| (r.stream.index(), r.stream.key()));
         }
-        let answer = self.show(request, hemispheres, visit);
-        self.complain(notify);
-        self.settle()?;
-        self.exchange(notify, false)?;
-        Ok(answer)
+        hemispheres
     }
 
     fn show(
         &mut self,
         request: &Request,
-        hemispheres: Hemispheres,
+        pass: u8,
+        hemispheres: &mut Hemispheres,
         visit: &mut dyn FnMut(&TreeRay, Names<'_>),
     ) -> Answer {
-        let tracer =
-            Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works, pass: 0 };
+        let tracer = Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works };
         let names = |id: ObjectId| self.name(id);
         let mut misses = Vec::new();
         let mut work = tracer.work();
         let mut watch = Watch { visit: &mut |ray| visit(ray, &names), hemispheres };
-        let mut walk =
-            Walk { tracer: &tracer, cache: &self.cache, work: &mut work, misses: &mut misses, observer: &mut watch };
+        let mut walk = Walk {
+            tracer: &tracer,
+            cache: &self.cache,
+            work: &mut work,
+            misses: &mut misses,
+            pass,
+            observer: &mut watch,
+        };
         let mut answer = walk.answer(request);
         drop(work);
         if !misses.is_empty() && !self.scene.fault.is_set() {
@@ -205,7 +242,7 @@ impl<O: Observer> Walk<'_, O> {
         let Some(rays) = self.observer.take_hemisphere(query) else { return };
         let share = coefficient / rays.len() as f32;
         for sample in rays {
-            let mut child = self.tracer.hemisphere_ray(query, sample);
+            let mut child = self.tracer.hemisphere_ray(query, &sample);
             if child.fate(true, &self.tracer.options.limits) != Fate::Alive {
                 continue;
             }

@@ -18,6 +18,8 @@ pub(crate) struct Walk<'s, O = ()> {
     pub(crate) cache: &'s Cache,
     pub(crate) work: &'s mut Work,
     pub(crate) misses: &'s mut Vec<Miss<Origin>>,
+    /// Which pass of a calculation by wavelength this is.
+    pub(crate) pass: u8,
     /// Sees the rays; `()` where nobody wants to.
     pub(crate) observer: O,
 }

@@ -1,7 +1,9 @@
 //! Prints an ambient file as text, or turns such text back into an ambient file.
 
-use ambit_ambient::{FORMAT, Layout, Record, TextForm, scan_header};
+use ambit_ambient::{Components, FORMAT, Layout, Record, TextForm, scan_header};
+use ambit_base::{DVec3, Rgb};
 use ambit_file::{Header, command_line};
+use ambit_render::Spectrum;
 use std::env::args_os;
 use std::ffi::OsString;
 use std::fs::File;
@@ -103,11 +105,32 @@ fn to_text(bytes: &[u8], name: &str, options: Options, out: &mut impl Write) -> 
         lines.write(out).map_err(Failure::Output)?;
     }
     // As in Radiance the listing ends at the first record that makes no sense.
-    let (records, _) = bytes[start..].as_chunks();
-    for record in records.iter().map(|r| layout.decode(r)).take_while(Record::is_plausible) {
+    let components = Components::in_order(header.components() as usize);
+    let colours = Colours::new(&header);
+    let records = bytes[start..].chunks_exact(layout.record_bytes(&components));
+    for mut record in records.map(|r| layout.decode(r, &components)).take_while(Record::is_plausible) {
+        if let Some(colours) = &colours {
+            record.value = colours.of(components.of(&record));
+        }
         out.write_all(options.form.write(&record).as_bytes()).map_err(Failure::Output)?;
     }
     Ok(())
+}
+
+/// Colours of spectra.
+struct Colours(Vec<DVec3>);
+
+impl Colours {
+    /// None for a file in red, green and blue, or whose wavelengths make no sense.
+    fn new(header: &Header) -> Option<Self> {
+        let [longest, .., shortest] = header.wavelength_splits().unwrap_or(Spectrum::default().limits());
+        let spectrum = Spectrum::new(header.components() as i32, shortest, longest).filter(|s| !s.is_rgb())?;
+        Some(Self(spectrum.tristimulus()))
+    }
+
+    fn of(&self, bins: impl Iterator<Item = f32>) -> Rgb {
+        Spectrum::rgb(self.0.iter().zip(bins).map(|(&xyz, bin)| xyz * f64::from(bin)).sum()).as_vec3()
+    }
 }
 
 fn to_binary(bytes: &[u8], name: &str, options: Options, line: &[u8], out: &mut impl Write) -> Result<(), Failure> {
@@ -132,7 +155,9 @@ fn to_binary(bytes: &[u8], name: &str, options: Options, line: &[u8], out: &mut 
     let mut words = text.split_ascii_whitespace();
     while let Some(record) = options.form.read(&mut words) {
         match record {
-            Ok(record) => out.write_all(&Layout::CURRENT.encode(&record)).map_err(Failure::Output)?,
+            Ok(record) => {
+                out.write_all(&Layout::CURRENT.encode(&record, &Components::default())).map_err(Failure::Output)?
+            }
             Err(problem) => {
                 // Radiance stops here without a word.
                 eprintln!("lookamb: warning - stopped at {problem}");

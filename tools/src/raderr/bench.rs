@@ -1,7 +1,7 @@
 //! Runs rpict or rtrace for the measurement, and reads what they give.
 
 use super::process::Program;
-use ambit_ambient::{RECORD_BYTES, scan_header};
+use ambit_ambient::{Components, scan_header};
 use ambit_file::Picture;
 use ambit_measure::{Bench, Error, Job, Output, Part};
 use std::path::{Path, PathBuf};
@@ -131,8 +131,10 @@ fn count_records(file: &Path) -> Result<Option<u64>, Error> {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(source) => return Err(Error::File { file: name, source }),
     };
-    let (_, _, start) = scan_header(&bytes, &name).map_err(|e| Error::Program(format!("ambient file: {e}")))?;
-    Ok(Some(((bytes.len() - start) / RECORD_BYTES) as u64))
+    let (header, layout, start) =
+        scan_header(&bytes, &name).map_err(|e| Error::Program(format!("ambient file: {e}")))?;
+    let components = Components::in_order(header.components() as usize);
+    Ok(Some(((bytes.len() - start) / layout.record_bytes(&components)) as u64))
 }
 
 /// The last count of rays in reports of progress.

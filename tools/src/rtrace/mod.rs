@@ -89,9 +89,6 @@ impl Job {
         if !spectrum.shows_colour() && !options.common.output.bins() {
             session.messages.warn("spectral range incompatible with color output");
         }
-        if spec.tree.is_some() && !spectrum.is_rgb() {
-            return Err(Failure::unsupported(&format!("ray trees (-o{}) with -cs above 3 are", options.fields)).into());
-        }
         if spec.tree.is_some() && options.rendering.options.ambient.unbounded {
             let what = format!("ray trees (-o{}) with --unbounded-bounces (or --unbiased) are", options.fields);
             return Err(Failure::unsupported(&what).into());

@@ -5,16 +5,8 @@ use crate::spectral::{Channels, Converter};
 use ambit_base::{DVec3, FAR, Rgb};
 use ambit_cli::{Field, OutputFormat};
 use ambit_file::encode_spectrum;
-use ambit_render::{Answer, Names, Spectra, Spectrum};
+use ambit_render::{Answer, Bins, Names, Spectra, Spectrum};
 use ambit_scene::VOID;
-
-/// Spectra of an answer.
-#[derive(Clone, Copy)]
-struct Bins<'a> {
-    value: &'a [f32],
-    mirrored: &'a [f32],
-    coefficient: &'a [f32],
-}
 
 /// Writes records.
 pub(crate) struct RecordWriter<'a> {
@@ -32,23 +24,13 @@ impl<'a> RecordWriter<'a> {
     /// Appends the records of a batch, with its spectra if the calculation is by wavelength.
     pub(crate) fn write_all(&self, out: &mut Vec<u8>, answers: &[Answer], spectra: Option<&Spectra>, names: Names<'_>) {
         for (i, answer) in answers.iter().enumerate() {
-            let bins =
-                spectra.map(|s| Bins { value: s.value(i), mirrored: s.mirrored(i), coefficient: s.coefficient(i) });
-            self.write_bins(out, answer, answer.value, bins, names);
+            self.write_bins(out, answer, answer.value, spectra.map(|s| s.bins(i)), names);
         }
     }
 
-    /// Appends the record of an answer in red, green and blue.
-    pub(crate) fn write(&self, out: &mut Vec<u8>, answer: &Answer, names: Names<'_>) {
-        self.write_with(out, answer, answer.value, names);
-    }
-
-    /// As [`Self::write`], for a ray that brings `contribution` to the primary ray.
-    pub(crate) fn write_with(&self, out: &mut Vec<u8>, answer: &Answer, contribution: Rgb, names: Names<'_>) {
-        self.write_bins(out, answer, contribution, None, names);
-    }
-
-    fn write_bins(
+    /// Appends the record of a ray that brings `contribution` to the primary ray, or its bins if the calculation is by
+    /// wavelength.
+    pub(crate) fn write_bins(
         &self,
         out: &mut Vec<u8>,
         answer: &Answer,
@@ -70,7 +52,7 @@ impl<'a> RecordWriter<'a> {
                 Field::Origin => self.vector(out, answer.origin),
                 Field::Direction => self.vector(out, answer.direction),
                 Field::Value => self.colour(out, answer.value, bins.map(|b| b.value)),
-                Field::Contribution => self.colour(out, contribution, bins.map(|b| b.value)),
+                Field::Contribution => self.colour(out, contribution, bins.map(|b| b.contribution)),
                 Field::Weight => self.number(out, f64::from(answer.weight)),
                 Field::Coefficient => self.colour(out, answer.coefficient, bins.map(|b| b.coefficient)),
                 Field::Length => self.number(out, answer.length),
@@ -106,7 +88,9 @@ impl<'a> RecordWriter<'a> {
         let (zero, one) = ([0.0; Spectrum::MOST], [1.0; Spectrum::MOST]);
         let bins = match self.conversion {
             Converter::Rgb(_) => None,
-            Converter::Spectral(_) => Some(Bins { value: &zero, mirrored: &zero, coefficient: &one }),
+            Converter::Spectral(_) => {
+                Some(Bins { value: &zero, contribution: &zero, mirrored: &zero, coefficient: &one })
+            }
         };
         let answer = Answer::nothing(origin, direction);
         self.write_bins(out, &answer, answer.value, bins, names);

@@ -95,7 +95,7 @@ impl Stream {
             if let Some(tree) = tree {
                 for request in &requests {
                     let answer = show(request, tree, &mut bytes, light, out)?;
-                    records.write(&mut bytes, &answer, &|id| light.name(id));
+                    records.write_all(&mut bytes, &[answer], light.spectra(), &|id| light.name(id));
                     before = (answer.origin, answer.direction);
                 }
             } else {
@@ -140,8 +140,8 @@ fn show(
     out: &mut dyn Write,
 ) -> Result<Answer, Stop> {
     let mut written = Ok(());
-    let answer = light.trace_tree(request, &mut |ray, names| {
-        tree.write(bytes, ray, names);
+    let answer = light.trace_tree(request, &mut |ray, bins, names| {
+        tree.write(bytes, ray, bins, names);
         if bytes.len() >= BUFFER {
             if written.is_ok() {
                 written = out.write_all(bytes);
@@ -159,7 +159,7 @@ mod tests {
     use crate::spectral::Converter;
     use ambit_base::Rgb;
     use ambit_cli::{InputFormat, Output, OutputFormat};
-    use ambit_render::{Names, TreeRay};
+    use ambit_render::Visit;
     use ambit_scene::ObjectId;
     use std::borrow::Cow;
     use std::cell::RefCell;
@@ -181,7 +181,7 @@ mod tests {
             Ok(requests.iter().map(answer).collect())
         }
 
-        fn trace_tree(&mut self, _: &Request, _: &mut dyn FnMut(&TreeRay, Names<'_>)) -> Result<Answer, Stop> {
+        fn trace_tree(&mut self, _: &Request, _: Visit<'_>) -> Result<Answer, Stop> {
             unreachable!("these tests ask for no trees")
         }
 

@@ -3,7 +3,7 @@
 use super::record::RecordWriter;
 use crate::spectral::Converter;
 use ambit_cli::{RayOptions, TreeSpec};
-use ambit_render::{Names, Selection, TreeRay};
+use ambit_render::{Bins, Names, Selection, TreeRay};
 
 /// Writes the rays of trees.
 pub(crate) struct TreeWriter<'a> {
@@ -20,12 +20,12 @@ impl<'a> TreeWriter<'a> {
     }
 
     /// Appends a ray's line, if it is to have one.
-    pub(crate) fn write(&self, out: &mut Vec<u8>, ray: &TreeRay, names: Names<'_>) {
+    pub(crate) fn write(&self, out: &mut Vec<u8>, ray: &TreeRay, bins: Option<Bins<'_>>, names: Names<'_>) {
         if ray.clear_shadow && !self.shadows || !self.selects(ray, names) {
             return;
         }
         out.resize(out.len() + ray.depth, b'\t');
-        self.record.write_with(out, &ray.answer, ray.contribution, names);
+        self.record.write_bins(out, &ray.answer, ray.contribution, bins, names);
     }
 
     /// True if what the ray hits has one of the wanted modifiers.

@@ -1,6 +1,7 @@
 //! The ambient file: records shared between runs and between programs that run at the same time.
 //!
-//! A text header, a magic number of two bytes, then records of 67 bytes up to the end of the file. The header tells, in
+//! A text header, a magic number of two bytes, then records of 67 bytes (those of a calculation by wavelength are longer) up to the end
+//! of the file. The header tells, in
 //! lines that Radiance passes over, what scene and parameters the records are of ([`Fingerprint`]); records of another
 //! scene are left alone ([`Reuse`]).
 //!

@@ -2,13 +2,13 @@
 
 use super::error::FileError;
 use super::reuse::{Opening, Reuse, Verdict};
-use super::scan::{Contents, FORMAT, scan};
+use super::scan::{Contents, FORMAT, scan_as};
 use super::segment::{has_segments, missing, remove_done, segments};
 use super::share::{AmbientFile, Locks, Spare, cut, io_error, lock, read_from, skipped};
 use crate::codec::Layout;
 use crate::record::Record;
 use ambit_base::Notify;
-use ambit_file::{FileLock, Header, LockMode, os_text};
+use ambit_file::{FileLock, Header, LockMode, general, os_text};
 use std::cell::Cell;
 use std::fs::File;
 use std::io::{ErrorKind, Seek, SeekFrom, Write};
@@ -21,8 +21,10 @@ use std::time::Duration;
 const TRIES: u32 = 40;
 /// How long to wait in between; four seconds in all, as Radiance does.
 const PAUSE: Duration = Duration::from_millis(100);
-/// The wavelengths in nm that separate the channels of RGB records.
-const SPLITS: &str = "WAVELENGTH_SPLITS= 780 588 480 380";
+/// The wavelengths of a file that does not tell.
+const SPLITS: [f64; 4] = [780.0, 588.0, 480.0, 380.0];
+/// Significant digits of wavelengths.
+const DIGITS: usize = 6;
 
 /// What opening came to.
 #[derive(Debug)]
@@ -156,8 +158,8 @@ impl Entry<'_> {
         let head = self.head(None);
         let start = head.len() as u64;
         let (name, spare) = (self.name.clone(), self.spare(head));
-        let layout = Layout::CURRENT;
-        let file = AmbientFile { file, name, layout, start, end: start, locks, waiting: Vec::new(), spare };
+        let (layout, components) = (Layout::CURRENT, self.opening.components.clone());
+        let file = AmbientFile { file, name, layout, components, start, end: start, locks, waiting: Vec::new(), spare };
         Ok(Opened { records: Vec::new(), file: Some(file) })
     }
 
@@ -183,8 +185,8 @@ impl Entry<'_> {
             Some(main) => header.extend(super::fingerprint_lines(main)),
             None => header.extend(self.opening.fingerprint.map(super::Fingerprint::lines).unwrap_or_default()),
         }
-        header.push(SPLITS);
-        header.push("NCOMP=3");
+        header.push(format!("WAVELENGTH_SPLITS= {}", words(&self.opening.splits)));
+        header.push(format!("NCOMP={}", self.opening.components.count()));
         header.push(format!("FORMAT={FORMAT}"));
         let mut bytes = Vec::new();
         // Writing to memory does not fail.
@@ -228,7 +230,7 @@ impl Entry<'_> {
     fn merge(&self, contents: &mut Contents, file: Option<&File>, end: u64) -> u64 {
         let segments = segments(self.path, contents, self.notify);
         let (records, bytes) = missing(contents, &segments);
-        contents.records.extend(&records);
+        contents.records.extend_from_slice(&records);
         let Some(mut file) = file else { return end };
         if !bytes.is_empty() {
             let written = file.seek(SeekFrom::Start(end)).and_then(|_| file.write_all(&bytes));
@@ -260,11 +262,12 @@ impl Entry<'_> {
                 }
                 self.tell_damage(&contents);
                 let spare = self.spare(self.head(Some(&contents.header)));
-                let Contents { layout, start, records, .. } = contents;
+                let Contents { layout, components, start, records, .. } = contents;
                 let (name, start) = (self.name.clone(), start as u64);
                 // Without locks others may be writing: new records will go elsewhere.
                 let locks = if locked { Locks::Within(self.opening.patience) } else { Locks::Broken };
-                let file = AmbientFile { file, name, layout, start, end, locks, waiting: Vec::new(), spare };
+                let file =
+                    AmbientFile { file, name, layout, components, start, end, locks, waiting: Vec::new(), spare };
                 Opened { records, file: Some(file) }
             }
         }
@@ -324,7 +327,14 @@ impl Entry<'_> {
     }
 
     fn understood(&self, bytes: &[u8]) -> Result<Contents, FileError> {
-        scan(bytes, &self.name).map_err(|problem| self.incompatible(problem))
+        let contents =
+            scan_as(bytes, &self.name, self.opening.components).map_err(|problem| self.incompatible(problem))?;
+        let (found, expected) = (contents.header.wavelength_splits().unwrap_or(SPLITS), self.opening.splits);
+        if contents.components.count() > 3 && words(&found) != words(&expected) {
+            let (found, expected) = (words(&found), words(&expected));
+            return Err(self.incompatible(format!("WAVELENGTH_SPLITS= {found}, of another -cw (expected {expected})")));
+        }
+        Ok(contents)
     }
 
     fn incompatible(&self, problem: impl Into<String>) -> FileError {
@@ -348,6 +358,11 @@ struct Existing {
     /// Where its last whole record ends.
     end: u64,
     locked: bool,
+}
+
+/// Wavelengths as headers have them.
+fn words(splits: &[f64; 4]) -> String {
+    splits.map(|nm| general(nm, DIGITS)).join(" ")
 }
 
 /// True if the path names this very file.

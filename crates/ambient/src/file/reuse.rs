@@ -2,6 +2,7 @@
 
 use super::error::FileError;
 use super::fingerprint::{Comparison, Fingerprint, Gravity};
+use crate::components::Components;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -26,6 +27,10 @@ pub struct Opening<'a> {
     /// Lines of a new file's header after `#?RADIANCE`: the command with its options, `SOFTWARE=`, `CAPDATE=`, `GMT=`.
     /// The fingerprint, wavelengths, `NCOMP` and `FORMAT` follow by themselves.
     pub header: &'a [String],
+    /// Where the components of a file's values stand in records.
+    pub components: &'a Components,
+    /// The wavelengths of components in nm: longest limit, red/green split, green/blue split, shortest limit.
+    pub splits: [f64; 4],
     /// What the run's records depend on; `None` writes none and accepts all.
     pub fingerprint: Option<&'a Fingerprint>,
     /// What is done with records that are there.

@@ -8,8 +8,8 @@
 //! `NAME.seg-OWNER.done`, that no more will come.
 
 use super::fingerprint::fingerprint_lines;
-use super::scan::{Contents, scan};
-use crate::codec::{Layout, RECORD_BYTES};
+use super::scan::{Contents, scan_as};
+use crate::codec::Layout;
 use crate::record::Record;
 use ambit_base::Notify;
 use std::collections::HashSet;
@@ -47,7 +47,9 @@ pub fn segments(path: &Path, main: &Contents, notify: &dyn Notify) -> Vec<Segmen
     let mut found = Vec::new();
     for path in names(path) {
         let shown = path.to_string_lossy().into_owned();
-        let contents = std::fs::read(&path).map_err(|e| ambit_file::os_text(&e)).and_then(|bytes| scan(&bytes, &shown));
+        let contents = std::fs::read(&path)
+            .map_err(|e| ambit_file::os_text(&e))
+            .and_then(|bytes| scan_as(&bytes, &shown, &main.components));
         match contents {
             Ok(contents) if fingerprint_lines(&contents.header).eq(fingerprint_lines(&main.header)) => {
                 found.push(Segment { path, contents });
@@ -80,13 +82,13 @@ pub(super) fn names(path: &Path) -> Vec<PathBuf> {
 
 /// The records of segments that `main` does not have yet, as bytes of its layout.
 pub fn missing(main: &Contents, segments: &[Segment]) -> (Vec<Record>, Vec<u8>) {
-    let mut known: HashSet<[u8; RECORD_BYTES]> = main.records.iter().map(|r| main.layout.encode(r)).collect();
+    let mut known: HashSet<Vec<u8>> = main.records.iter().map(|r| main.layout.encode(r, &main.components)).collect();
     let mut records = Vec::new();
     let mut bytes = Vec::new();
     for record in segments.iter().flat_map(|s| &s.contents.records) {
-        let encoded = main.layout.encode(record);
-        if known.insert(encoded) {
-            records.push(*record);
+        let encoded = main.layout.encode(record, &main.components);
+        if known.insert(encoded.clone()) {
+            records.push(record.clone());
             bytes.extend(encoded);
         }
     }

@@ -3,7 +3,8 @@
 use super::error::FileError;
 use super::scan::records;
 use super::segment;
-use crate::codec::{Layout, RECORD_BYTES};
+use crate::codec::Layout;
+use crate::components::Components;
 use crate::record::Record;
 use ambit_base::Notify;
 use ambit_file::{FileLock, LockError, LockMode};
@@ -13,8 +14,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Records that wait before they are written: what fits the C library's buffer of 8192 bytes, as in Radiance.
-const BUFFERED: usize = 8192 / RECORD_BYTES;
+/// Bytes of records that wait before they are written: the C library's buffer, as in Radiance.
+const BUFFERED: usize = 8192;
 
 /// An ambient file open for appending. Nothing is written when this is dropped: call [`AmbientFile::sync`] before.
 #[derive(Debug)]
@@ -22,6 +23,7 @@ pub struct AmbientFile {
     pub(super) file: Arc<File>,
     pub(super) name: String,
     pub(super) layout: Layout,
+    pub(super) components: Components,
     /// Where the first record begins.
     pub(super) start: u64,
     /// The end of what has been read or written here.
@@ -57,10 +59,10 @@ pub(super) struct Spare {
 }
 
 impl AmbientFile {
-    /// Adds records; they are written once there are 122. Returns what others have appended meanwhile.
+    /// Adds records; they are written once there are 122 (of three components). Returns what others have appended meanwhile.
     pub fn append(&mut self, records: &[Record], notify: &dyn Notify) -> Result<Vec<Record>, FileError> {
         self.waiting.extend_from_slice(records);
-        if self.waiting.len() < BUFFERED { Ok(Vec::new()) } else { self.sync(notify) }
+        if self.waiting.len() < BUFFERED / self.record_bytes() { Ok(Vec::new()) } else { self.sync(notify) }
     }
 
     /// Writes what waits and returns what others have appended.
@@ -93,10 +95,10 @@ impl AmbientFile {
         let file = Arc::clone(&self.file);
         if length < self.end {
             notify.warn(&format!("ambient file \"{}\" was shortened by another program", self.name));
-            self.end = length - (length - self.start) % RECORD_BYTES as u64;
+            self.end = length - (length - self.start) % self.record_bytes() as u64;
         }
         let bytes = read_from(&file, self.end).map_err(io_error("read", &self.name))?;
-        let (foreign, damaged, torn) = records(&bytes, self.layout);
+        let (foreign, damaged, torn) = records(&bytes, self.layout, &self.components);
         if damaged > 0 {
             notify.warn(&skipped(damaged, &self.name));
         }
@@ -110,20 +112,24 @@ impl AmbientFile {
             if let Err(source) = written {
                 // What is whole stays, what is not goes; the other records wait for another try.
                 let length = file.metadata().map_or(end, |m| m.len());
-                let whole = ((length.saturating_sub(end)) as usize / RECORD_BYTES).min(self.waiting.len());
-                self.end = end + (whole * RECORD_BYTES) as u64;
+                let whole = ((length.saturating_sub(end)) as usize / self.record_bytes()).min(self.waiting.len());
+                self.end = end + (whole * self.record_bytes()) as u64;
                 let _ = file.set_len(self.end);
                 self.waiting.drain(..whole);
                 let (file, records) = (self.name.clone(), self.waiting.len());
                 return Err(FileError::Write { file, records, source });
             }
         }
-        self.end = end + (self.waiting.len() * RECORD_BYTES) as u64;
+        self.end = end + (self.waiting.len() * self.record_bytes()) as u64;
         self.waiting.clear();
         if let Some(lock) = held {
             lock.release().map_err(|e| lock_failed(e, &self.name))?;
         }
         Ok(foreign)
+    }
+
+    fn record_bytes(&self) -> usize {
+        self.layout.record_bytes(&self.components)
     }
 
     /// Turns to a segment of the file.
@@ -157,9 +163,9 @@ impl AmbientFile {
 
     /// Writes what waits at `end`, after cutting off what follows.
     pub(super) fn write(&self, end: u64, truncate: bool) -> io::Result<()> {
-        let mut bytes = Vec::with_capacity(self.waiting.len() * RECORD_BYTES);
+        let mut bytes = Vec::with_capacity(self.waiting.len() * self.record_bytes());
         for record in &self.waiting {
-            bytes.extend(self.layout.encode(record));
+            bytes.extend(self.layout.encode(record, &self.components));
         }
         if truncate {
             self.file.set_len(end)?;

@@ -2,12 +2,17 @@
 
 use super::*;
 use crate::codec::{Layout, RECORD_BYTES};
+use crate::components::Components;
 use crate::record::Record;
 use ambit_base::{DVec3, Notify, Rgb, Silent};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::Mutex;
+use std::sync::{LazyLock, Mutex};
+
+/// Components and wavelengths of most files.
+pub(super) static RGB: LazyLock<Components> = LazyLock::new(Components::default);
+pub(super) const SPLITS: [f64; 4] = [780.0, 588.0, 480.0, 380.0];
 
 /// Keeps the warnings.
 #[derive(Default)]
@@ -37,8 +42,9 @@ fn record(number: u32) -> Record {
         rotation: [0.0, 0.3],
         corral: number,
         value: Rgb::new(1.0, 0.5, 0.25),
+        further: Box::default(),
     }
-    .quantised()
+    .quantised(&RGB)
 }
 
 pub(super) fn batch(from: u32, count: u32) -> Vec<Record> {
@@ -74,7 +80,15 @@ impl Folder {
 
 /// An opening without fingerprint.
 fn plain(header: &[String]) -> Opening<'_> {
-    Opening { header, fingerprint: None, reuse: Reuse::Auto, patience: PATIENCE, owner: "test-1" }
+    Opening {
+        header,
+        components: &RGB,
+        splits: SPLITS,
+        fingerprint: None,
+        reuse: Reuse::Auto,
+        patience: PATIENCE,
+        owner: "test-1",
+    }
 }
 
 fn try_open(path: &Path, notify: &dyn Notify) -> Result<Opened, FileError> {
@@ -148,8 +162,8 @@ fn what_a_killed_writer_left_is_overwritten() {
     let folder = Folder::filled(4);
     let mut file = open(&folder.file()).file.unwrap();
     let mut bytes = fs::read(folder.file()).unwrap();
-    bytes.extend(Layout::CURRENT.encode(&record(77)));
-    bytes.extend(&Layout::CURRENT.encode(&record(78))[..20]);
+    bytes.extend(Layout::CURRENT.encode(&record(77), &RGB));
+    bytes.extend(&Layout::CURRENT.encode(&record(78), &RGB)[..20]);
     fs::write(folder.file(), &bytes).unwrap();
     let heard = Heard::default();
     file.append(&batch(90, 1), &heard).unwrap();
@@ -236,7 +250,7 @@ fn files_of_radiance_5_are_read_and_continued_in_their_layout() {
     let folder = Folder::new();
     let mut bytes = b"#?RADIANCE\nrtrace room.oct\nFORMAT=Radiance_ambval\n\n\x02\x2f".to_vec();
     for r in batch(0, 3) {
-        bytes.extend(Layout::V559.encode(&r));
+        bytes.extend(Layout::V559.encode(&r, &RGB));
     }
     fs::write(folder.file(), &bytes).unwrap();
     let opened = open(&folder.file());
@@ -244,7 +258,7 @@ fn files_of_radiance_5_are_read_and_continued_in_their_layout() {
     let mut file = opened.file.unwrap();
     file.append(&batch(3, 1), &Silent).unwrap();
     file.sync(&Silent).unwrap();
-    bytes.extend(Layout::V559.encode(&record(3)));
+    bytes.extend(Layout::V559.encode(&record(3), &RGB));
     assert_eq!(fs::read(folder.file()).unwrap(), bytes);
 }
 

@@ -1,6 +1,6 @@
 //! Files of the same light, of another, and of unknown origin.
 
-use super::tests::{Folder, Heard, batch, lines};
+use super::tests::{Folder, Heard, RGB, SPLITS, batch, lines};
 use super::*;
 use ambit_base::Silent;
 use std::fs;
@@ -24,7 +24,15 @@ fn run(
 ) -> Result<(Vec<u32>, String), FileError> {
     let heard = Heard::default();
     let header = lines();
-    let opening = Opening { header: &header, fingerprint: Some(print), reuse, patience: PATIENCE, owner: "test-1" };
+    let opening = Opening {
+        header: &header,
+        components: &RGB,
+        splits: SPLITS,
+        fingerprint: Some(print),
+        reuse,
+        patience: PATIENCE,
+        owner: "test-1",
+    };
     let Opened { records, file } = AmbientFile::open(&folder.file(), &opening, &heard)?;
     if let Some(mut file) = file {
         file.append(&batch(added.start, added.len() as u32), &Silent)?;

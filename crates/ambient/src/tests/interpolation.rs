@@ -16,7 +16,7 @@ impl Sampler for Wall {
 
     fn scratch(&self) {}
 
-    fn sample(&self, (): &mut (), _: &Cache, _: &Query<()>, _: SampleRay, _: &mut Vec<Miss<()>>) -> Option<Sample> {
+    fn sample(&self, (): &mut (), _: &Cache, _: &Query<()>, _: &SampleRay, _: &mut Vec<Miss<()>>) -> Option<Sample> {
         None
     }
 
@@ -44,15 +44,24 @@ fn record() -> Record {
         rotation: [0.0; 2],
         corral: 0,
         value: Rgb::ONE,
+        further: Box::default(),
     }
 }
 
 fn query(x: f64, y: f64, z: f64) -> Query<()> {
-    Query { position: DVec3::new(x, y, z), normal: DVec3::Z, shading: DVec3::Z, weight: 1.0, level: 0, origin: () }
+    Query {
+        position: DVec3::new(x, y, z),
+        normal: DVec3::Z,
+        shading: DVec3::Z,
+        weight: 1.0,
+        level: 0,
+        pass: 0,
+        origin: (),
+    }
 }
 
 fn answer(records: &[Record], wall: &Wall, query: &Query<()>) -> Option<Rgb> {
-    let mut store = Store::new(DVec3::splat(-2.0), 4.0);
+    let mut store = Store::new(DVec3::splat(-2.0), 4.0, 1);
     for r in records {
         assert!(store.insert(r, 0.2));
     }
@@ -60,7 +69,7 @@ fn answer(records: &[Record], wall: &Wall, query: &Query<()>) -> Option<Rgb> {
 }
 
 fn accepts(record: &Record, query: &Query<()>) -> bool {
-    answer(&[*record], &OPEN, query).is_some()
+    answer(&[record.clone()], &OPEN, query).is_some()
 }
 
 fn tilted(degrees: f64) -> DVec3 {
@@ -115,7 +124,7 @@ fn weights_are_products_of_hats() {
     // Two records at the ends: at 0.03 from one and 0.06 from the other along u the weights are 0.7 and 0.4.
     let a = Record { value: Rgb::new(1.0, 0.0, 2.0), ..record() };
     let b = Record { position: DVec3::new(0.09, 0.0, 0.0), value: Rgb::new(0.0, 1.0, 4.0), ..record() };
-    let v = answer(&[a, b], &OPEN, &query(0.03, 0.0, 0.0)).unwrap();
+    let v = answer(&[a.clone(), b], &OPEN, &query(0.03, 0.0, 0.0)).unwrap();
     let expected = Rgb::new(0.7, 0.4, 3.0) / 1.1;
     assert!((v - expected).abs().max_element() < 1e-5, "{v}");
     // Angle: half of the limit gives half the weight.
@@ -147,7 +156,7 @@ fn extrapolation_follows_gradients_and_is_limited() {
 #[test]
 fn the_corral_is_probed_in_its_azimuths_only() {
     let fenced = Record { corral: 0b11 | 1 << 31, ..record() };
-    let ask = |x: f64, y: f64, wall| answer(&[fenced], &Wall(wall), &query(x, y, 0.0)).is_some();
+    let ask = |x: f64, y: f64, wall| answer(&[fenced.clone()], &Wall(wall), &query(x, y, 0.0)).is_some();
     assert!(ask(0.09, 0.0, 5.0), "a flagged azimuth without an occluder");
     assert!(!ask(0.09, 0.0, 0.05), "a flagged azimuth with a wall between");
     assert!(ask(-0.09, 0.0, -0.05), "an azimuth without flag");
@@ -167,7 +176,7 @@ fn every_record_in_reach_is_found() {
     // Records of many radii, compared with a search through all of them. Without early-out: tolerance × cell > R₋ fails
     // for the smallest cells only, so the limits are widened until it never holds.
     let wide = Limits { min_radius: 4.0, ..limits() };
-    let mut store = Store::new(DVec3::splat(-2.0), 4.0);
+    let mut store = Store::new(DVec3::splat(-2.0), 4.0, 1);
     let number = |k: u32, tag| Stream::new(k, tag).one();
     let records: Vec<Record> = (0..3000)
         .map(|k| {

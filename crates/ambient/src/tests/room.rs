@@ -151,6 +151,7 @@ impl Room {
                     shading: h.normal,
                     weight: query.weight * weight,
                     level: query.level + 1,
+                    pass: query.pass,
                     origin: (),
                 };
                 let sample = Sample { radiance, distance: h.distance, normal: h.normal.as_vec3() };
@@ -188,6 +189,7 @@ impl Room {
                     shading: h.normal,
                     weight: self.weight,
                     level: 0,
+                    pass: 0,
                     origin: (),
                 };
                 misses.push(Miss { coefficient: h.reflectance, query });
@@ -211,7 +213,7 @@ impl Sampler for Room {
         (): &mut (),
         cache: &Cache,
         query: &Query<()>,
-        SampleRay { direction, weight, stream }: SampleRay,
+        &SampleRay { direction, weight, stream, .. }: &SampleRay,
         misses: &mut Vec<Miss<()>>,
     ) -> Option<Sample> {
         let (mut sample, question) = self.look(query, direction, weight, stream);

@@ -20,7 +20,7 @@ impl<F: Fn(DVec3, DVec3) -> (f32, f64) + Sync> Sampler for Around<F> {
         (): &mut (),
         _: &Cache,
         query: &Query<()>,
-        SampleRay { direction, weight, .. }: SampleRay,
+        &SampleRay { direction, weight, .. }: &SampleRay,
         _: &mut Vec<Miss<()>>,
     ) -> Option<Sample> {
         assert_eq!(weight, 0.5);
@@ -38,7 +38,7 @@ pub(crate) fn params(divisions: i32, seed: u64) -> Params {
 }
 
 pub(crate) fn query(position: DVec3) -> Query<()> {
-    Query { position, normal: DVec3::Z, shading: DVec3::Z, weight: 1.0, level: 0, origin: () }
+    Query { position, normal: DVec3::Z, shading: DVec3::Z, weight: 1.0, level: 0, pass: 0, origin: () }
 }
 
 /// The record at a point facing +z.
@@ -56,7 +56,7 @@ pub(crate) fn record_with(
     assert_eq!(cache.ask(&sampler, &query), Answer::Miss);
     let values = cache.resolve(&sampler, &[Miss { coefficient: Rgb::ONE, query }]);
     assert_eq!(values, [cache.records()[0].value]);
-    cache.records()[0]
+    cache.records()[0].clone()
 }
 
 /// A tangential pair of a record as x and y.

@@ -92,7 +92,7 @@ impl<O: Observer> Walk<'_, O> {
                 return;
             }
             Pattern::Constants(passes) => {
-                finish.pattern *= passes[self.tracer.pass];
+                finish.pattern *= passes[usize::from(self.pass)];
                 return;
             }
             Pattern::Spectral(spectral) => self.spectral(ray, spectral).map(|c| c.as_dvec3().to_array()),

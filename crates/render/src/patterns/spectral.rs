@@ -167,7 +167,7 @@ impl Spectral {
 impl<O: Observer> Walk<'_, O> {
     /// The three channels of a spectral pattern in this pass; None where it has no value.
     pub(crate) fn spectral(&mut self, ray: &Ray<'_>, spectral: &Spectral) -> Option<Rgb> {
-        let folding = &spectral.foldings[self.tracer.pass];
+        let folding = &spectral.foldings[usize::from(self.pass)];
         self.evaluate_with(ray, &spectral.functions, |pass| spectral.evaluate(folding, pass))
     }
 }

@@ -13,8 +13,9 @@ mod spectra;
 pub(crate) use cie::{desaturate, rgb_of_xyz};
 pub use efficiency::Efficiency;
 pub(crate) use efficiency::tristimulus;
-pub use spectra::Spectra;
+pub use spectra::{Bins, Spectra};
 
+use ambit_ambient::Components;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -129,12 +130,38 @@ impl Spectrum {
         if self.is_rgb() { 1 } else { (0..3).map(|c| self.channel(c).len()).max().unwrap_or(1) }
     }
 
-    /// The bands of the three channels in each pass. Channels that have run out of bins repeat their last one, those
+    /// The bins of the three channels in each pass. Channels that have run out of bins repeat their last one, those
     /// that have none at all take any.
-    pub(crate) fn schedule(&self) -> Vec<[Range<f64>; 3]> {
+    fn turns(&self, passes: usize) -> Vec<[usize; 3]> {
         let channels = [0, 1, 2].map(|c| self.channel(c));
-        let band = |bins: &Vec<usize>, pass: usize| self.band(bins.get(pass).or(bins.last()).copied().unwrap_or(0));
-        (0..self.passes()).map(|pass| [0, 1, 2].map(|c| band(&channels[c], pass))).collect()
+        let bin = |bins: &Vec<usize>, pass: usize| bins.get(pass).or(bins.last()).copied().unwrap_or(0);
+        (0..passes).map(|pass| [0, 1, 2].map(|c| bin(&channels[c], pass))).collect()
+    }
+
+    /// The bands of the three channels in each pass.
+    pub(crate) fn schedule(&self) -> Vec<[Range<f64>; 3]> {
+        self.turns(self.passes()).into_iter().map(|turn| turn.map(|bin| self.band(bin))).collect()
+    }
+
+    /// Pass and channel of each bin; a single pass serves all.
+    fn places(&self, passes: usize) -> Vec<(usize, usize)> {
+        let mut places = vec![(0, 0); self.bins];
+        for channel in 0..3 {
+            for (pass, bin) in self.channel(channel).into_iter().enumerate() {
+                places[bin] = (pass.min(passes - 1), channel);
+            }
+        }
+        places
+    }
+
+    /// Where bins stand in records of so many passes.
+    pub(crate) fn components(&self, passes: usize) -> Components {
+        if self.is_rgb() {
+            return Components::default();
+        }
+        let places = self.places(passes).into_iter().map(|(pass, channel)| (pass as u8, channel as u8)).collect();
+        let turns = self.turns(passes).into_iter().map(|turn| turn.map(|bin| bin as u8)).collect();
+        Components::new(places, turns).expect("there are three to 24 bins, and each has its place")
     }
 }
 

@@ -5,7 +5,7 @@
 //! records in a row make sense.
 
 use crate::store::{Failure, Output, PATIENCE, Told, bytes, file, tell};
-use ambit_ambient::{Layout, RECORD_BYTES, Record, missing, remove_done, scan, scan_header, segments};
+use ambit_ambient::{Components, Layout, Record, missing, remove_done, scan, segments};
 use ambit_file::{FileLock, LockMode, os_text};
 use std::collections::HashSet;
 use std::fmt::Write as _;
@@ -34,30 +34,31 @@ struct Found {
 }
 
 impl Found {
-    fn of(bytes: &[u8], layout: Layout) -> Self {
+    fn of(bytes: &[u8], layout: Layout, components: &Components) -> Self {
+        let size = layout.record_bytes(components);
         let mut found = Self::default();
         let mut known = HashSet::new();
         let (mut at, mut end) = (0, 0);
         let record = |at: usize| {
-            let bytes: &[u8; RECORD_BYTES] = bytes.get(at..at + RECORD_BYTES)?.try_into().ok()?;
-            let record = layout.decode(bytes);
-            (record.is_plausible() && is_written(&layout.encode(&record), bytes)).then_some((record, *bytes))
+            let bytes = bytes.get(at..at + size)?;
+            let record = layout.decode(bytes, components);
+            (record.is_plausible() && is_written(&layout.encode(&record, components), bytes)).then_some((record, bytes))
         };
-        while at + RECORD_BYTES <= bytes.len() {
+        while at + size <= bytes.len() {
             // In step with the one before a single record is believed.
-            let in_step = at == end || at % RECORD_BYTES == 0;
-            let run = if in_step { 1 } else { RUN.min((bytes.len() - at) / RECORD_BYTES) };
-            match record(at).filter(|_| (1..run).all(|k| record(at + k * RECORD_BYTES).is_some())) {
+            let in_step = at == end || at % size == 0;
+            let run = if in_step { 1 } else { RUN.min((bytes.len() - at) / size) };
+            match record(at).filter(|_| (1..run).all(|k| record(at + k * size).is_some())) {
                 Some((r, own)) => {
                     found.damaged += at - end;
-                    found.displaced += usize::from(at % RECORD_BYTES != 0);
+                    found.displaced += usize::from(at % size != 0);
                     if known.insert(own) {
                         found.records.push(r);
                         found.kept.extend(own);
                     } else {
                         found.repeated += 1;
                     }
-                    at += RECORD_BYTES;
+                    at += size;
                     end = at;
                 }
                 None => at += 1,
@@ -74,7 +75,7 @@ impl Found {
 
 /// True if a record whose bytes are `own` would be written as `again`, but for its directions: several codes mean
 /// nearly the same (a component stored as zero has lost its sign, two may tie for the largest).
-fn is_written(again: &[u8; RECORD_BYTES], own: &[u8; RECORD_BYTES]) -> bool {
+fn is_written(again: &[u8], own: &[u8]) -> bool {
     let Range { start, end } = Layout::DIRECTIONS;
     again[..start] == own[..start] && again[end..] == own[end..]
 }
@@ -88,7 +89,7 @@ pub(crate) fn print(files: &[PathBuf]) -> Result<bool, Failure> {
         let (text, sound) = match scan(&bytes, &name) {
             Err(problem) => (problem, false),
             Ok(contents) => {
-                let f = Found::of(&bytes[contents.start..], contents.layout);
+                let f = Found::of(&bytes[contents.start..], contents.layout, &contents.components);
                 let parts = segments(path, &contents, &Told).len();
                 let mut text = format!("{} records", f.records.len());
                 for (count, what) in [
@@ -126,18 +127,18 @@ pub(crate) fn repair(path: &Path, output: &Output) -> Result<(), Failure> {
     }
     let mut bytes = Vec::new();
     (&*handle).read_to_end(&mut bytes).map_err(failed)?;
-    let (header, layout, start) = scan_header(&bytes, &name)?;
     let mut contents = scan(&bytes, &name)?;
-    let found = Found::of(&bytes[start..], layout);
+    let (layout, components, start) = (contents.layout, contents.components.clone(), contents.start);
+    let found = Found::of(&bytes[start..], layout, &components);
     contents.records = found.records;
     let parts = segments(path, &contents, &Told);
     let (_, more) = missing(&contents, &parts);
     let mut records = found.kept;
     records.extend(more);
-    let (kept, dropped) = (records.len() / RECORD_BYTES, found.damaged + found.torn);
+    let (kept, dropped) = (records.len() / layout.record_bytes(&components), found.damaged + found.torn);
     tell(&format!("{name}: {kept} records kept, {} repeated ones and {dropped} bytes dropped", found.repeated));
     if !in_place {
-        return output.write(&[file(&header, layout, &[]), records].concat());
+        return output.write(&[file(&contents.header, layout, &components, &[]), records].concat());
     }
     if records != bytes[start..] {
         let mut out = &*handle;
@@ -153,6 +154,7 @@ pub(crate) fn repair(path: &Path, output: &Output) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ambit_ambient::RECORD_BYTES;
     use ambit_base::{DVec3, Rgb};
 
     fn record(k: u32) -> Record {
@@ -167,12 +169,13 @@ mod tests {
             rotation: [0.125; 2],
             corral: k,
             value: Rgb::ONE,
+            further: Box::default(),
         }
-        .quantised()
+        .quantised(&Components::default())
     }
 
     fn encoded(numbers: std::ops::Range<u32>) -> Vec<u8> {
-        numbers.flat_map(|k| Layout::V561.encode(&record(k))).collect()
+        numbers.flat_map(|k| Layout::V561.encode(&record(k), &Components::default())).collect()
     }
 
     fn numbers(found: &Found) -> Vec<u32> {
@@ -181,7 +184,7 @@ mod tests {
 
     #[test]
     fn a_sound_file_is_sound() {
-        let found = Found::of(&encoded(1..6), Layout::V561);
+        let found = Found::of(&encoded(1..6), Layout::V561, &Components::default());
         assert!(found.sound());
         assert_eq!(numbers(&found), [1, 2, 3, 4, 5]);
     }
@@ -193,7 +196,7 @@ mod tests {
         let at = RECORD_BYTES + Layout::DIRECTIONS.start;
         assert_eq!(bytes[at..at + 4], [0, 0, 0, 8]);
         bytes[at + 3] = 9;
-        let found = Found::of(&bytes, Layout::V561);
+        let found = Found::of(&bytes, Layout::V561, &Components::default());
         assert!(found.sound());
         assert_eq!(numbers(&found), [1, 2, 3]);
         assert_eq!(found.kept, bytes);
@@ -207,7 +210,7 @@ mod tests {
         let at = 3 * RECORD_BYTES + 37;
         bytes.splice(at.., block);
         bytes.extend([1, 2, 3]);
-        let found = Found::of(&bytes, Layout::V561);
+        let found = Found::of(&bytes, Layout::V561, &Components::default());
         assert_eq!(numbers(&found), [1, 2, 3, 20, 21, 22, 23]);
         assert_eq!((found.displaced, found.damaged, found.torn), (4, 37, 3));
         assert!(!found.sound());
@@ -217,7 +220,7 @@ mod tests {
     fn a_damaged_record_and_a_repeated_one_cost_themselves() {
         let mut bytes = [encoded(1..5), encoded(2..3)].concat();
         bytes[RECORD_BYTES * 2..RECORD_BYTES * 3].fill(0xff);
-        let found = Found::of(&bytes, Layout::V561);
+        let found = Found::of(&bytes, Layout::V561, &Components::default());
         assert_eq!(numbers(&found), [1, 2, 4]);
         assert_eq!((found.damaged, found.repeated, found.displaced), (RECORD_BYTES, 1, 0));
     }

@@ -2,7 +2,7 @@
 
 use crate::stats::Grid;
 use crate::store::{Failure, contents, print as write};
-use ambit_ambient::{Layout, RECORD_BYTES, Record, fingerprint_lines};
+use ambit_ambient::{Contents, Layout, Record, fingerprint_lines};
 use ambit_base::Colour;
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -32,15 +32,15 @@ pub(crate) fn print(left: &Path, right: &Path) -> Result<bool, Failure> {
     {
         say(format!("{name} {}", String::from_utf8_lossy(line)));
     }
-    let set = |records: &[Record]| -> HashSet<[u8; RECORD_BYTES]> {
-        records.iter().map(|r| Layout::CURRENT.encode(r)).collect()
+    let set = |c: &Contents| -> HashSet<Vec<u8>> {
+        c.records.iter().map(|r| Layout::CURRENT.encode(r, &c.components)).collect()
     };
-    let (one, other) = (set(&a.records), set(&b.records));
+    let (one, other) = (set(&a), set(&b));
     let common = one.intersection(&other).count();
-    let only = |records: &[Record], rest: &HashSet<[u8; RECORD_BYTES]>| -> Vec<Record> {
-        records.iter().filter(|r| !rest.contains(&Layout::CURRENT.encode(r))).copied().collect()
+    let only = |c: &Contents, rest: &HashSet<Vec<u8>>| -> Vec<Record> {
+        c.records.iter().filter(|r| !rest.contains(&Layout::CURRENT.encode(r, &c.components))).cloned().collect()
     };
-    let (left_only, right_only) = (only(&a.records, &other), only(&b.records, &one));
+    let (left_only, right_only) = (only(&a, &other), only(&b, &one));
     say(format!("{common} records in both"));
     say(format!("{} only in {}", left_only.len(), left.display()));
     say(format!("{} only in {}", right_only.len(), right.display()));

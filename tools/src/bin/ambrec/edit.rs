@@ -1,7 +1,7 @@
 //! Other records in, other records out: merging, pruning, converting.
 
 use crate::store::{Failure, Output, contents, file, tell};
-use ambit_ambient::{Layout, Record, fingerprint_lines};
+use ambit_ambient::{Components, Layout, Record, fingerprint_lines};
 use ambit_base::DVec3;
 use clap::Args;
 use std::collections::HashSet;
@@ -15,7 +15,12 @@ pub(crate) fn merge(files: &[PathBuf], output: &Output, force: bool) -> Result<(
     let mut first = None;
     for path in files {
         let one = contents(path)?;
-        let main = first.get_or_insert_with(|| (one.header.clone(), one.layout));
+        let main = first.get_or_insert_with(|| (one.header.clone(), one.layout, one.components.clone()));
+        if one.components != main.2 {
+            let (a, b) = (files[0].display(), path.display());
+            let (found, expected) = (one.components.count(), main.2.count());
+            return Err(format!("\"{b}\" has NCOMP={found}, and \"{a}\" NCOMP={expected}").into());
+        }
         if !force && !fingerprint_lines(&main.0).eq(fingerprint_lines(&one.header)) {
             let (a, b) = (files[0].display(), path.display());
             // Radiance's files have none.
@@ -30,18 +35,25 @@ pub(crate) fn merge(files: &[PathBuf], output: &Output, force: bool) -> Result<(
             .into());
         }
         read += one.records.len();
-        all.extend(one.records.into_iter().filter(|r| known.insert(Layout::CURRENT.encode(r))));
+        all.extend(one.records.into_iter().filter(|r| known.insert(Layout::CURRENT.encode(r, &one.components))));
     }
-    let Some((header, layout)) = first else { return Ok(()) };
+    let Some((header, layout, components)) = first else { return Ok(()) };
     tell(&format!("{} records of {read}", all.len()));
-    output.write(&file(&header, layout, &all))
+    output.write(&file(&header, layout, &components, &all))
 }
 
 /// Writes another layout.
 pub(crate) fn convert(path: &Path, to: &str, output: &Output) -> Result<(), Failure> {
     let layout = to.parse().ok().and_then(Layout::of_magic).ok_or_else(|| format!("layout {to} is not known"))?;
     let all = contents(path)?;
-    output.write(&file(&all.header, layout, &all.records))
+    if layout == Layout::V559 && all.components != Components::default() {
+        return Err(format!(
+            "\"{}\" is of a calculation by wavelength, which layout 559 has no room for",
+            path.display()
+        )
+        .into());
+    }
+    output.write(&file(&all.header, layout, &all.components, &all.records))
 }
 
 #[derive(Args)]
@@ -80,9 +92,9 @@ impl Prune {
     /// Removes records.
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let all = contents(&self.file)?;
-        let left: Vec<Record> = all.records.iter().filter(|r| self.meets(r) == self.keep).copied().collect();
+        let left: Vec<Record> = all.records.iter().filter(|r| self.meets(r) == self.keep).cloned().collect();
         tell(&format!("{} records of {}", left.len(), all.records.len()));
-        self.output.write(&file(&all.header, all.layout, &left))
+        self.output.write(&file(&all.header, all.layout, &all.components, &left))
     }
 
     /// True if a record meets all conditions; without any, none does.

@@ -87,7 +87,7 @@ struct Level {
 
 impl Level {
     fn of(number: u8, all: &[Record]) -> Self {
-        let records: Vec<Record> = all.iter().filter(|r| r.level == number).copied().collect();
+        let records: Vec<Record> = all.iter().filter(|r| r.level == number).cloned().collect();
         let each = |f: fn(&Record) -> f64| Spread::of(records.iter().map(f));
         Self {
             number,
@@ -130,7 +130,8 @@ pub(crate) fn print(path: &Path, json: bool) -> Result<(), Failure> {
     let parts = segments(path, &contents, &Told);
     let levels: Vec<u8> = (0..=255).filter(|&l| contents.records.iter().any(|r| r.level == l)).collect();
     let levels: Vec<Level> = levels.into_iter().map(|l| Level::of(l, &contents.records)).collect();
-    let distinct: HashSet<_> = contents.records.iter().map(|r| Layout::CURRENT.encode(r)).collect();
+    let encode = |r: &Record| Layout::CURRENT.encode(r, &contents.components);
+    let distinct: HashSet<_> = contents.records.iter().map(encode).collect();
     let summary = Summary {
         contents: &contents,
         segments: parts.len(),

@@ -1,6 +1,6 @@
 //! Ambient files in and out.
 
-use ambit_ambient::{Contents, FORMAT, Layout, RECORD_BYTES, Record, missing, scan, segments};
+use ambit_ambient::{Components, Contents, FORMAT, Layout, Record, missing, scan, segments};
 use ambit_file::{FileLock, Header, LockMode, Replacement, os_text};
 use clap::Args;
 use std::fs::File;
@@ -79,21 +79,21 @@ pub(crate) fn contents(path: &Path) -> Result<Contents, Failure> {
 }
 
 /// An ambient file of these records, with the lines of `header` that still hold.
-pub(crate) fn file(header: &Header, layout: Layout, records: &[Record]) -> Vec<u8> {
+pub(crate) fn file(header: &Header, layout: Layout, components: &Components, records: &[Record]) -> Vec<u8> {
     let mut lines = Header::empty();
     let dropped = [&b"NCOMP="[..], b"WAVELENGTH_SPLITS="];
     lines.extend(header.lines_without_format().filter(|l| !dropped.iter().any(|d| l.starts_with(d))));
     if layout == Layout::V561 {
         lines.extend(header.lines().filter(|l| l.starts_with(b"WAVELENGTH_SPLITS=")));
-        lines.push("NCOMP=3");
+        lines.push(format!("NCOMP={}", components.count()));
     }
     lines.push(format!("FORMAT={FORMAT}"));
-    let mut bytes = Vec::with_capacity(1024 + records.len() * RECORD_BYTES);
+    let mut bytes = Vec::with_capacity(1024 + records.len() * layout.record_bytes(components));
     // Writing to memory does not fail.
     let _ = lines.write(&mut bytes);
     bytes.extend(layout.magic().to_be_bytes());
     for record in records {
-        bytes.extend(layout.encode(record));
+        bytes.extend(layout.encode(record, components));
     }
     bytes
 }
