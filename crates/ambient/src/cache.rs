@@ -3,6 +3,7 @@
 use crate::average::Average;
 use crate::clamping::Reins;
 use crate::components::Components;
+use crate::light::Light;
 use crate::observe::{Observer, Stopwatch};
 use crate::params::{Limits, Params};
 use crate::radii::ANISOTROPY;
@@ -61,7 +62,7 @@ impl Cache {
     pub fn new(params: Params, cube_origin: DVec3, cube_edge: f64) -> Self {
         Self {
             limits: Limits::new(&params, cube_edge),
-            store: Store::new(cube_origin, cube_edge, params.passes),
+            store: Store::new(cube_origin, cube_edge, params.passes, params.tells_bounces_apart()),
             plain: params.caches(),
             observer: None,
             stopwatch: Stopwatch::default(),
@@ -159,6 +160,15 @@ impl Cache {
         self.params.divisions <= 0 || i32::from(level) >= self.params.bounces.min(255)
     }
 
+    /// The light of a hemisphere at a level, in place of whose last bounces stands the fallback.
+    pub(crate) fn ending(&self, level: u8, light: Light) -> Light {
+        if !self.params.tells_bounces_apart() {
+            return light.value.into();
+        }
+        let left = self.params.bounces.min(255) - i32::from(level);
+        light.ending(left.max(1) as usize, self.fallback())
+    }
+
     /// Answers from what is stored. Include and exclude lists are the caller's business, before this.
     pub fn ask<S: Sampler>(&self, sampler: &S, query: &Query<S::Origin>) -> Answer {
         if self.ends_at(query.level) {
@@ -171,7 +181,7 @@ impl Cache {
     }
 
     /// The interpolated value, if records of enough weight qualify.
-    pub(crate) fn lookup<S: Sampler>(&self, sampler: &S, query: &Query<S::Origin>) -> Option<Rgb> {
+    pub(crate) fn lookup<S: Sampler>(&self, sampler: &S, query: &Query<S::Origin>) -> Option<Light> {
         let sum = self.store.lookup(&self.limits, sampler, query);
         sum.answer().filter(|_| sum.is_enough(self.params.enough(query.level)))
     }

@@ -104,6 +104,7 @@ impl Layout {
             corral: u32::from_be_bytes(word(corral)),
             value: Rgb::ZERO,
             further: Box::default(),
+            late: Box::default(),
         };
         components.give(channels, &mut record);
         record
@@ -210,6 +211,7 @@ mod tests {
             Record {
                 position: position.into(), normal, u, level, weight, radii: [r0, r0 * ratio], gradient, rotation,
                 corral, value: value.into(), further: Box::default(),
+            late: Box::default(),
             }
         }
     }

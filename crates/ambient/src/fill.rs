@@ -10,6 +10,7 @@
 
 use crate::cache::Cache;
 use crate::finish::Outcome;
+use crate::light::Light;
 use crate::reuse::RENT;
 use crate::round::Kept;
 use crate::sampler::{Miss, Query, Sampler};
@@ -30,8 +31,13 @@ impl Cache {
     /// Computes what records are needed and answers every miss, in order. Values are irradiance/π at the query, to be
     /// multiplied by the miss's coefficient.
     pub fn resolve<S: Sampler>(&mut self, sampler: &S, misses: &[Miss<S::Origin>]) -> Vec<Rgb> {
+        self.answers(sampler, misses).into_iter().map(|light| light.value).collect()
+    }
+
+    /// As [`Cache::resolve`], by bounces.
+    pub(crate) fn answers<S: Sampler>(&mut self, sampler: &S, misses: &[Miss<S::Origin>]) -> Vec<Light> {
         let start = self.stopwatch.start();
-        let mut values = vec![Rgb::ZERO; misses.len()];
+        let mut values = vec![Light::NONE; misses.len()];
         let mut levels: Vec<u8> = misses.iter().map(|m| m.query.level).collect();
         levels.sort_unstable();
         levels.dedup();
@@ -54,12 +60,12 @@ impl Cache {
         level: u8,
         window: &[usize],
         stale: bool,
-        values: &mut [Rgb],
+        values: &mut [Light],
     ) {
         if self.ends_at(level) || !self.params.caches() {
             let fallback = self.fallback();
             for &k in window {
-                values[k] = fallback;
+                values[k] = fallback.into();
             }
             return;
         }
@@ -78,9 +84,9 @@ impl Cache {
     }
 
     /// Fills the cache until every query has an answer.
-    fn rounds<S: Sampler>(&mut self, sampler: &S, level: u8, queries: &[Query<S::Origin>]) -> Vec<Rgb> {
+    fn rounds<S: Sampler>(&mut self, sampler: &S, level: u8, queries: &[Query<S::Origin>]) -> Vec<Light> {
         let limits = self.limits;
-        let mut values = vec![Rgb::ZERO; queries.len()];
+        let mut values = vec![Light::NONE; queries.len()];
         let mut picked = vec![false; queries.len()];
         let mut exempt = vec![false; queries.len()];
         let mut open: Vec<usize> = (0..queries.len()).collect();
@@ -156,7 +162,7 @@ impl Cache {
         level: u8,
         queries: &[Query<S::Origin>],
         open: &mut Vec<usize>,
-        values: &mut [Rgb],
+        values: &mut [Light],
     ) -> Vec<usize> {
         let Some(reuse) = &mut self.reuse else { return Vec::new() };
         let rented: Vec<usize> = open.extract_if(.., |&mut q| reuse.rents(&queries[q])).collect();
@@ -165,7 +171,7 @@ impl Cache {
         for picks in rented.chunks(CAP * RENT as usize) {
             let outcomes = self.hemispheres(sampler, level, queries, picks, Kept::No);
             for (&q, outcome) in picks.iter().zip(outcomes) {
-                values[q] = outcome.value().unwrap_or(fallback);
+                values[q] = outcome.value().unwrap_or(fallback.into());
             }
         }
         self.statistics.rented += rented.len() as u64;
@@ -179,7 +185,7 @@ impl Cache {
         queries: &[Query<S::Origin>],
         picks: &[usize],
         outcomes: &[Outcome],
-        values: &mut [Rgb],
+        values: &mut [Light],
     ) -> Store {
         let fallback = self.fallback();
         let mut delta = self.store.emptied();
@@ -198,7 +204,7 @@ impl Cache {
                     self.statistics.unstored += 1;
                     *value
                 }
-                Outcome::Nothing => fallback,
+                Outcome::Nothing => fallback.into(),
             };
         }
         if self.params.systems.neighbour_clamping {
@@ -213,7 +219,7 @@ impl Cache {
 }
 
 /// Takes what was found as values; returns what is still open.
-fn settle(open: &[usize], found: &[Option<Rgb>], values: &mut [Rgb]) -> Vec<usize> {
+fn settle(open: &[usize], found: &[Option<Light>], values: &mut [Light]) -> Vec<usize> {
     let mut left = Vec::new();
     for (&k, found) in open.iter().zip(found) {
         match found {

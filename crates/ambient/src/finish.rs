@@ -7,6 +7,7 @@ use crate::derivatives::Derivatives;
 use crate::edges::Points;
 use crate::grid::Grid;
 use crate::hemisphere::Hemisphere;
+use crate::light::Light;
 use crate::lookup::{MAX_FACTOR, MIN_FACTOR};
 use crate::mesh::{cover, mesh, rotational};
 use crate::params::Limits;
@@ -14,7 +15,7 @@ use crate::radii::{Ellipse, circle, ellipse, split_sphere, turned};
 use crate::record::Record;
 use crate::sampler::Query;
 use crate::tilt::Tilt;
-use ambit_base::{Colour, DVec3, EPSILON, Rgb, Vec3};
+use ambit_base::{Colour, DVec3, EPSILON, Vec3};
 
 /// Share of the black floor in relative radiances, which keeps black occluders visible to the Hessian.
 const FLOOR: f64 = 0.01;
@@ -32,7 +33,7 @@ const UNTEXTURED: f64 = 0.9999;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cell {
     /// Mean radiance of its samples.
-    pub(crate) radiance: Rgb,
+    pub(crate) light: Light,
     /// Distance of the first sample; 0 if it was refused.
     pub(crate) distance: f64,
     /// Reciprocal distance of the closest sample.
@@ -45,16 +46,16 @@ pub(crate) struct Cell {
 #[derive(Clone, Debug)]
 pub(crate) enum Outcome {
     /// A record, and its answer to the query that asked.
-    Record(Record, Rgb),
+    Record(Record, Light),
     /// Some samples were refused: an answer to use once.
-    Once(Rgb),
+    Once(Light),
     /// All samples were refused.
     Nothing,
 }
 
 impl Outcome {
     /// What it answers to the query that asked; none if all samples were refused.
-    pub(crate) fn value(self) -> Option<Rgb> {
+    pub(crate) fn value(self) -> Option<Light> {
         match self {
             Self::Record(_, value) | Self::Once(value) => Some(value),
             Self::Nothing => None,
@@ -73,16 +74,18 @@ impl Outcome {
         }
     }
 
-    /// What all passes together have come to, with the value of each.
-    pub(crate) fn by_pass<O>(self, query: &Query<O>, mut values: impl ExactSizeIterator<Item = Rgb>) -> Self {
+    /// What all passes together have come to, with the light of each.
+    pub(crate) fn by_pass<O>(self, query: &Query<O>, mut lights: impl ExactSizeIterator<Item = Light>) -> Self {
         match self {
             Self::Record(mut record, _) => {
-                record.value = values.next().unwrap_or_default();
-                record.further = values.collect();
+                let lights: Vec<Light> = lights.collect();
+                record.value = lights[0].value;
+                record.further = lights[1..].iter().map(|l| l.value).collect();
+                record.late = lights.iter().map(|l| l.late).collect();
                 let answer = answer(&record, query);
                 if record.is_plausible() { Self::Record(record, answer) } else { Self::Once(answer) }
             }
-            Self::Once(_) => Self::Once(values.nth(usize::from(query.pass)).unwrap_or_default()),
+            Self::Once(_) => Self::Once(lights.nth(usize::from(query.pass)).unwrap_or_default()),
             Self::Nothing => Self::Nothing,
         }
     }
@@ -96,14 +99,12 @@ pub(crate) fn least_distance(limits: &Limits) -> f64 {
 /// The mean of a hemisphere that is not kept, for the normal that textures turned.
 pub(crate) fn once<O>(query: &Query<O>, plan: &Hemisphere, cells: &[Cell]) -> Outcome {
     let mut tilt = Tilt::default();
-    let (mut sum, mut taken) = (DVec3::ZERO, 0);
+    let mut taken = 0;
     for (k, cell) in cells.iter().enumerate().filter(|(_, c)| c.distance > 0.0) {
-        tilt.add(plan, k, cell.radiance);
-        sum += cell.radiance.as_dvec3();
+        tilt.add(plan, k, cell.light.value);
         taken += 1;
     }
-    let mean = (sum / cells.len() as f64).as_vec3();
-    if taken == 0 { Outcome::Nothing } else { Outcome::Once(mean * tilt.factor(plan, query.shading)) }
+    if taken == 0 { Outcome::Nothing } else { Outcome::Once(mean(cells.iter()) * tilt.factor(plan, query.shading)) }
 }
 
 /// Turns cells into a record.
@@ -113,12 +114,12 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
     if taken == 0 {
         return Outcome::Nothing;
     }
-    let value = mean(cells.iter());
+    let light = mean(cells.iter());
     if taken < cells.len() {
-        return Outcome::Once(value);
+        return Outcome::Once(light);
     }
     let weight = limits.record_weight(query.level, query.weight);
-    let bright = value.mean();
+    let bright = light.value.mean();
     let lit = (f64::from(bright) > BLACK).then_some(bright);
     let (shape, rotation) = match grid {
         Grid::Disk { .. } => curved(limits, weight, plan, cells, lit),
@@ -139,22 +140,27 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
         gradient: shape.gradient.map(|g| g as f32),
         rotation: rotation.map(|h| h as f32),
         corral: corral(grid, |c| plan.local(c), |c| cells[c].nearness, reach, shape.turn),
-        value,
+        value: light.value,
         further: Box::default(),
+        late: Box::new([light.late]),
     };
     if record.is_plausible() {
         let answer = answer(&record, query);
         Outcome::Record(record, answer)
     } else {
-        Outcome::Once(value)
+        Outcome::Once(light)
     }
 }
 
 /// Mean radiance of the cells, those whose samples were refused being black.
-pub(crate) fn mean<'c>(cells: impl ExactSizeIterator<Item = &'c Cell>) -> Rgb {
+pub(crate) fn mean<'c>(cells: impl ExactSizeIterator<Item = &'c Cell>) -> Light {
     let share = 1.0 / cells.len() as f64;
-    let sum: DVec3 = cells.filter(|c| c.distance > 0.0).map(|c| c.radiance.as_dvec3()).sum();
-    (sum * share).as_vec3()
+    let (mut sum, mut late) = (DVec3::ZERO, Light::default());
+    for cell in cells.filter(|c| c.distance > 0.0) {
+        sum += cell.light.value.as_dvec3();
+        late += cell.light;
+    }
+    Light { value: (sum * share).as_vec3(), ..late * share as f32 }
 }
 
 /// The ellipse of the Hessian and the rotational gradient of a hemisphere of the given mean radiance; none in the dark.
@@ -168,7 +174,7 @@ fn curved(limits: &Limits, weight: f32, plan: &Hemisphere, cells: &[Cell], mean:
     }));
     let (derivatives, rotation, least) = if let Some(mean) = mean {
         let scale = (1.0 - FLOOR) as f32;
-        let values: Vec<f32> = cells.iter().map(|c| scale * (c.radiance.mean() / mean - 1.0)).collect();
+        let values: Vec<f32> = cells.iter().map(|c| scale * (c.light.value.mean() / mean - 1.0)).collect();
         let crowd = 1.0 / (VERY_NEAR * limits.min_radius * limits.accuracy);
         let crowded = border(n).filter(|&c| cells[c].nearness > crowd).count() as f64;
         let least = crowded > CROWDED * border(n).count() as f64;
@@ -188,7 +194,7 @@ fn curved(limits: &Limits, weight: f32, plan: &Hemisphere, cells: &[Cell], mean:
 /// The circle of the split sphere and the classical gradients.
 fn split(limits: &Limits, weight: f32, grid: Grid, cells: &[Cell], mean: Option<f32>) -> (Ellipse, [f64; 2]) {
     let (rings, sectors) = (grid.rows(), grid.columns());
-    let value = |cell: &Cell| mean.map_or(0.0, |mean| f64::from(cell.radiance.mean() / mean) - 1.0);
+    let value = |cell: &Cell| mean.map_or(0.0, |mean| f64::from(cell.light.value.mean() / mean) - 1.0);
     let values: Vec<f64> = cells.iter().map(value).collect();
     let distances: Vec<f64> = cells.iter().map(|c| c.distance).collect();
     let gradient = classical::translational(rings, sectors, &values, &distances);
@@ -203,13 +209,13 @@ fn harmonic(cells: &[Cell], limits: &Limits, weight: f32) -> Ellipse {
 }
 
 /// What a record answers at its own place, for a shading normal that textures may have turned.
-pub(crate) fn answer<O>(record: &Record, query: &Query<O>) -> Rgb {
-    let value = record.of_pass(query.pass);
+pub(crate) fn answer<O>(record: &Record, query: &Query<O>) -> Light {
+    let light = record.light(query.pass);
     if query.normal.dot(query.shading) >= UNTEXTURED {
-        return value;
+        return light;
     }
     let turn = record.normal.cross(query.shading);
     let [hu, hv] = record.rotation.map(f64::from);
     let factor = 1.0 + turn.dot(record.u) * hu + turn.dot(record.v()) * hv;
-    value * (factor as f32).clamp(MIN_FACTOR, MAX_FACTOR)
+    light * (factor as f32).clamp(MIN_FACTOR, MAX_FACTOR)
 }

@@ -65,10 +65,10 @@ pub(crate) fn trace<S: Sampler>(
 /// A sample without negative or undefined numbers.
 fn repair(mut sample: Sample, repaired: &mut u64) -> Sample {
     let light = |c: f32| c.is_finite() && c >= 0.0;
-    let sound = sample.radiance.to_array().into_iter().all(light) && sample.distance >= 0.0;
+    let sound = sample.light.value.to_array().into_iter().all(light) && sample.distance >= 0.0;
     if !sound {
         *repaired += 1;
-        sample.radiance = Rgb::from_array(sample.radiance.to_array().map(|c| if light(c) { c } else { 0.0 }));
+        sample.light = Rgb::from_array(sample.light.value.to_array().map(|c| if light(c) { c } else { 0.0 })).into();
         if sample.distance.is_nan() || sample.distance < 0.0 {
             sample.distance = ambit_base::FAR;
         }

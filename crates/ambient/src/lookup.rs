@@ -2,10 +2,11 @@
 //! product of two hat functions (Schwarzhaupt, Jensen, Jarosz 2012 for the ellipse) and first-order extrapolation
 //! (Ward & Heckbert 1992, *Irradiance Gradients*).
 
+use crate::light::Light;
 use crate::params::Limits;
 use crate::sampler::{Query, Sampler};
 use crate::store::{Derived, Place};
-use ambit_base::{DVec3, EPSILON, Rgb, Vec3};
+use ambit_base::{DVec3, EPSILON, Vec3};
 
 /// Least extrapolation factor; a record that falls to it is not used.
 pub(crate) const MIN_FACTOR: f32 = 0.05;
@@ -66,12 +67,12 @@ impl Asked {
 /// Weighted sum over the records that qualify.
 pub(crate) struct Sum {
     pub(crate) weight: f32,
-    value: Rgb,
-    spare: Option<(f32, Rgb)>,
+    light: Light,
+    spare: Option<(f32, Light)>,
 }
 
 impl Sum {
-    pub(crate) const EMPTY: Self = Self { weight: 0.0, value: Rgb::ZERO, spare: None };
+    pub(crate) const EMPTY: Self = Self { weight: 0.0, light: Light::NONE, spare: None };
 
     /// True if the weight makes an answer; a last resort does whatever it weighs.
     pub(crate) fn is_enough(&self, weight: f32) -> bool {
@@ -79,24 +80,24 @@ impl Sum {
     }
 
     /// The interpolated value, if anything qualified.
-    pub(crate) fn answer(&self) -> Option<Rgb> {
+    pub(crate) fn answer(&self) -> Option<Light> {
         if f64::from(self.weight) > EPSILON {
-            Some(self.value / self.weight)
+            Some(self.light.over(self.weight))
         } else {
-            self.spare.map(|(_, value)| value)
+            self.spare.map(|(_, light)| light)
         }
     }
 }
 
 /// Adds one record to the sum, returning its weight; 0 if it does not qualify. Level and weight are tested by the caller.
-/// `value` is its value in the pass that asks.
+/// `light` gives what it answers at its own place.
 #[inline]
 pub(crate) fn accumulate<S: Sampler>(
     asked: &Asked,
     angle: f32,
     place: &Place,
     derived: &Derived,
-    value: &Rgb,
+    light: impl FnOnce() -> Light,
     sampler: &S,
     query: &Query<S::Origin>,
     sum: &mut Sum,
@@ -140,13 +141,13 @@ pub(crate) fn accumulate<S: Sampler>(
     let factor = 1.0 + du * gu + dv * gv + turn.dot(u) * hu + turn.dot(v) * hv;
     if factor <= MIN_FACTOR {
         if d2 < asked.spare_reach * asked.spare_reach && sum.spare.is_none_or(|(nearest, _)| d2 < nearest) {
-            sum.spare = Some((d2, *value * MIN_FACTOR));
+            sum.spare = Some((d2, light() * MIN_FACTOR));
         }
         return 0.0;
     }
     let weight = (1.0 - tilt2.sqrt() / angle) * (1.0 - reach2.sqrt() / asked.accuracy);
     sum.weight += weight;
-    sum.value += *value * (factor.min(MAX_FACTOR) * weight);
+    sum.light += light() * (factor.min(MAX_FACTOR) * weight);
     weight
 }
 

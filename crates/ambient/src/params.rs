@@ -55,6 +55,8 @@ pub struct Systems {
     pub neighbour_clamping: bool,
     /// `--measured-reuse`: from level 1 on few samples, used once, where records are hardly reused.
     pub measured_reuse: bool,
+    /// `--mixed-bounces`: questions of deeper levels are answered with all bounces of the records they find, as in Radiance.
+    pub mixed_bounces: bool,
     /// `--spacing`: what decides how far records reach.
     pub spacing: Spacing,
 }
@@ -93,6 +95,11 @@ impl Params {
     /// True if records are stored and reused.
     pub fn caches(&self) -> bool {
         self.accuracy > EPSILON
+    }
+
+    /// True if questions of deeper levels are answered without the bounces that they have no more.
+    pub(crate) fn tells_bounces_apart(&self) -> bool {
+        self.bounces > 1 && !self.systems.mixed_bounces
     }
 
     /// The summed weight that makes an answer at a level.

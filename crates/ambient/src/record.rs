@@ -2,6 +2,7 @@
 
 use crate::codec::Layout;
 use crate::components::Components;
+use crate::light::{APART, Light};
 use ambit_base::{DVec3, Rgb};
 
 /// Irradiance at a point of a surface, with first derivatives and an ellipse of validity.
@@ -31,6 +32,8 @@ pub struct Record {
     pub value: Rgb,
     /// The same in the further passes of a calculation by wavelength; none without.
     pub further: Box<[Rgb]>,
+    /// What of the values the last bounce, and the last two, brought, in each pass; none where it is not known, as in files.
+    pub late: Box<[[Rgb; APART]]>,
 }
 
 /// Bounds of plausible numbers in records (Radiance's "infinite").
@@ -52,12 +55,14 @@ impl Record {
             && self.radii.iter().all(|&r| radius(r))
             && self.radii[0] <= self.radii[1] * (1.0 + 1e-6) + 1e-6
             && self.gradient.iter().chain(&self.rotation).all(|&g| below(g))
+            && self.late.iter().flatten().all(|l| l.is_finite())
             && self.values().all(|v| v.to_array().iter().all(|&c| c >= 0.0 && below(c)))
     }
 
     /// The record as an ambient file of such components would return it.
     pub fn quantised(&self, components: &Components) -> Self {
-        Layout::CURRENT.decode(&Layout::CURRENT.encode(self, components), components)
+        let kept = Layout::CURRENT.decode(&Layout::CURRENT.encode(self, components), components);
+        Self { late: self.late.clone(), ..kept }
     }
 
     /// Irradiance/π in each pass.
@@ -68,6 +73,11 @@ impl Record {
     /// Irradiance/π in a pass; black in one that the record knows nothing of.
     pub fn of_pass(&self, pass: u8) -> Rgb {
         if pass == 0 { self.value } else { self.further.get(usize::from(pass) - 1).copied().unwrap_or_default() }
+    }
+
+    /// The light in a pass.
+    pub(crate) fn light(&self, pass: u8) -> Light {
+        Light { value: self.of_pass(pass), late: self.late.get(usize::from(pass)).copied().unwrap_or_default() }
     }
 
     /// The second tangent, `normal × u`.

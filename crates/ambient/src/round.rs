@@ -9,12 +9,13 @@ use crate::fill::key;
 use crate::finish::{Cell, Outcome, finish, least_distance, mean, once};
 use crate::gather::{Sampled, trace};
 use crate::hemisphere::Hemisphere;
+use crate::light::Light;
 use crate::params::Limits;
 use crate::reuse::RENT;
 use crate::sampler::{Query, Sample, Sampler};
 use crate::steps::Chain;
 use crate::supersample::{allocate, budget};
-use ambit_base::{Colour, Rgb, Stream, Vec3};
+use ambit_base::{Colour, Stream, Vec3};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -77,13 +78,13 @@ impl Cache {
             if waiting.is_empty() {
                 break;
             }
-            let mut answers = misses.iter().zip(self.resolve(sampler, &misses));
+            let mut answers = misses.iter().zip(self.answers(sampler, &misses));
             for &k in &waiting {
                 if let State::Waiting(hemisphere) = &mut states[k] {
                     let Sampled { returned, owners, .. } = &mut hemisphere.sampled;
                     for (owner, (miss, answer)) in owners.iter().zip(answers.by_ref()) {
                         if let Some(sample) = &mut returned[*owner as usize] {
-                            sample.radiance += miss.coefficient * answer;
+                            sample.light += answer.times(miss.coefficient);
                         }
                     }
                 }
@@ -182,7 +183,7 @@ impl<S: Sampler> Round<'_, S> {
         if budget == 0 || cells.iter().any(|c| c.distance <= 0.0) {
             return Vec::new();
         }
-        let brightness: Vec<f32> = cells.iter().map(|c| c.radiance.brightness()).collect();
+        let brightness: Vec<f32> = cells.iter().map(|c| c.light.value.brightness()).collect();
         let counts =
             allocate([plan.grid().rows(), plan.grid().columns()], &brightness, budget, |cell| plan.share(cell));
         counts.iter().enumerate().flat_map(|(cell, &m)| (0..m).map(move |k| (cell, k))).collect()
@@ -204,13 +205,13 @@ impl<S: Sampler> Round<'_, S> {
             let (own, rest) = returned.split_at(run.len() * passes);
             returned = rest;
             for (pass, cell) in cells[run[0].0 * passes..][..passes].iter_mut().enumerate() {
-                let (mut sum, mut count) = (cell.radiance, 1.0);
+                let (mut sum, mut count) = (cell.light, 1.0);
                 for sample in own.iter().skip(pass).step_by(passes).flatten() {
-                    sum += sample.radiance;
+                    sum += sample.light;
                     count += 1.0;
                     cell.nearness = cell.nearness.max(1.0 / sample.distance.max(least));
                 }
-                cell.radiance = sum / count;
+                cell.light = sum * (1.0 / count);
             }
         }
         self.finish(query, plan, &cells)
@@ -218,13 +219,15 @@ impl<S: Sampler> Round<'_, S> {
 
     fn finish(&self, query: &Query<S::Origin>, plan: &Hemisphere, cells: &[Cell]) -> Outcome {
         if self.kept == Kept::No {
-            return once(query, plan, cells);
+            return match once(query, plan, cells) {
+                Outcome::Once(light) => Outcome::Once(self.cache.ending(query.level, light)),
+                other => other,
+            };
         }
-        let mut outcome = finish(&self.cache.limits, query, plan, &together(cells, plan.len()));
+        let outcome = finish(&self.cache.limits, query, plan, &together(cells, plan.len()));
         let passes = cells.len() / plan.len();
-        if passes > 1 {
-            outcome = outcome.by_pass(query, (0..passes).map(|pass| mean(cells.iter().skip(pass).step_by(passes))));
-        }
+        let lights = (0..passes).map(|pass| mean(cells.iter().skip(pass).step_by(passes)));
+        let outcome = outcome.by_pass(query, lights.map(|light| self.cache.ending(query.level, light)));
         match &self.cache.quantised {
             Some(components) => outcome.quantised(query, components),
             None => outcome,
@@ -252,7 +255,8 @@ fn together(cells: &[Cell], count: usize) -> Cow<'_, [Cell]> {
         return Cow::Borrowed(cells);
     }
     let passes = cells.len() / count;
-    let mean = |all: &[Cell]| Cell { radiance: all.iter().map(|c| c.radiance).sum::<Rgb>() / passes as f32, ..all[0] };
+    let mean =
+        |all: &[Cell]| Cell { light: all.iter().map(|c| c.light).sum::<Light>() * (1.0 / passes as f32), ..all[0] };
     cells.chunks(passes).map(mean).collect()
 }
 
@@ -261,8 +265,8 @@ fn cell(returned: Option<Sample>, least: f64) -> Cell {
     match returned {
         Some(s) => {
             let distance = s.distance.max(least);
-            Cell { radiance: s.radiance, distance, nearness: 1.0 / distance, normal: s.normal }
+            Cell { light: s.light, distance, nearness: 1.0 / distance, normal: s.normal }
         }
-        None => Cell { radiance: Rgb::ZERO, distance: 0.0, nearness: 0.0, normal: Vec3::ZERO },
+        None => Cell { light: Light::default(), distance: 0.0, nearness: 0.0, normal: Vec3::ZERO },
     }
 }

@@ -1,6 +1,6 @@
 //! What the cache asks of its user (radiance along a direction) and what it is asked.
 
-use crate::Cache;
+use crate::{Cache, Light};
 use ambit_base::{DVec3, Rgb, Stream, Vec3};
 
 /// A question for the diffuse indirect light at a point.
@@ -36,8 +36,8 @@ pub struct Miss<O> {
 /// What a hemisphere ray brought back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Radiance arriving against the ray, without the answers still missing, W/(sr·m²).
-    pub radiance: Rgb,
+    /// Radiance arriving against the ray, without the answers still missing.
+    pub light: Light,
     /// Effective distance to what sends it, scene units; [`ambit_base::FAR`] if nothing was hit.
     pub distance: f64,
     /// The geometric normal of the surface that sends it, either side, unit length; 0 if that is none or unknown.
@@ -92,7 +92,7 @@ pub trait Sampler: Sync {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Answer {
     /// Interpolated from records.
-    Value(Rgb),
+    Value(Light),
     /// The calculation stops here: the constant or running average that stands for the rest.
     Fallback(Rgb),
     /// No record qualifies: collect the query and hand it to [`Cache::resolve`].

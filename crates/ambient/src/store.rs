@@ -7,6 +7,7 @@
 //! Everything lies in flat arrays: the lists are runs of columns that are compared several records at a time; what
 //! passes is tested on the record itself, and its value read last.
 
+use crate::light::{APART, Light};
 use crate::lookup::{Asked, Sum, accumulate};
 use crate::params::Limits;
 use crate::record::Record;
@@ -87,6 +88,9 @@ pub(crate) struct Store {
     /// Values in further passes, so many a record.
     further: Vec<Rgb>,
     further_passes: usize,
+    /// What the last bounces brought, in each pass, so many a record; none where bounces are not told apart.
+    late: Vec<[Rgb; APART]>,
+    apart: bool,
     /// The lists, each a run of blocks.
     blocks: Vec<Block>,
     /// Runs given up by lists that grew: entry k holds the starts of those of 2^k blocks.
@@ -94,8 +98,9 @@ pub(crate) struct Store {
 }
 
 impl Store {
-    /// An empty tree over the cube with the given low corner and edge, of records with values in so many passes.
-    pub(crate) fn new(corner: DVec3, edge: f64, passes: u8) -> Self {
+    /// An empty tree over the cube with the given low corner and edge, of records with values in so many passes; `apart`
+    /// if bounces are told apart.
+    pub(crate) fn new(corner: DVec3, edge: f64, passes: u8, apart: bool) -> Self {
         Self {
             corner,
             edge,
@@ -104,6 +109,8 @@ impl Store {
             derived: Vec::new(),
             further: Vec::new(),
             further_passes: usize::from(passes.max(1)) - 1,
+            late: Vec::new(),
+            apart,
             blocks: Vec::new(),
             vacant: Vec::new(),
         }
@@ -111,7 +118,7 @@ impl Store {
 
     /// An empty tree over the same cube.
     pub(crate) fn emptied(&self) -> Self {
-        Self::new(self.corner, self.edge, self.further_passes as u8 + 1)
+        Self::new(self.corner, self.edge, self.further_passes as u8 + 1, self.apart)
     }
 
     /// Files a record in the cells of its reach. False if an equal one is there already.
@@ -130,6 +137,9 @@ impl Store {
         self.places.push(place);
         self.derived.push(Derived::of(record));
         self.further.extend((0..self.further_passes).map(|k| record.of_pass(k as u8 + 1)));
+        if self.apart {
+            self.late.extend((0..=self.further_passes).map(|k| record.light(k as u8).late));
+        }
         // Cells are found by halving in look-ups and by division here: the margin covers the difference.
         let margin = DVec3::splat(reach * (1.0 + MARGIN) + self.edge * MARGIN);
         let last = (1u64 << depth) - 1;
@@ -170,6 +180,17 @@ impl Store {
             0 => &self.derived[id].value,
             _ => &self.further[id * self.further_passes + usize::from(pass) - 1],
         }
+    }
+
+    /// What a record answers at its own place. Of questions of the eye's nobody wants to know what the last bounces brought.
+    #[inline]
+    fn light<O>(&self, id: usize, level: u8, query: &Query<O>) -> Light {
+        let value = *self.value(id, query.pass);
+        if query.level == 0 || !self.apart {
+            return value.into();
+        }
+        let late = self.late[id * (self.further_passes + 1) + usize::from(query.pass)];
+        Light { value, late }.deeper(query.level - level)
     }
 
     /// True if the cell at `depth` around a record lists one like it.
@@ -323,11 +344,11 @@ impl Store {
                     break;
                 }
                 let mut sum = Sum::EMPTY;
-                let (derived, value) = (&self.derived[id as usize], self.value(id as usize, query.pass));
-                let own = accumulate(&asked, angle, place, derived, value, sampler, query, &mut sum);
+                let (derived, light) = (&self.derived[id as usize], || self.light(id as usize, place.level, query));
+                let own = accumulate(&asked, angle, place, derived, light, sampler, query, &mut sum);
                 if own > 0.0 {
                     weight += own;
-                    found.extend(sum.answer().map(|value| (own, value)));
+                    found.extend(sum.answer().map(|light| (own, light.value)));
                 }
             }
         }
@@ -382,8 +403,8 @@ impl<S: Sampler> Search<'_, S> {
                 if deeper || place.level == self.asked.level && place.weight < self.asked.least_weight {
                     return weight;
                 }
-                let (derived, value) = (&store.derived[id], store.value(id, self.query.pass));
-                weight += accumulate(&self.asked, angle, place, derived, value, self.sampler, self.query, sum);
+                let (derived, light) = (&store.derived[id], || store.light(id, place.level, self.query));
+                weight += accumulate(&self.asked, angle, place, derived, light, self.sampler, self.query, sum);
             }
         }
         weight

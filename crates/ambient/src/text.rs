@@ -115,6 +115,7 @@ impl TextForm {
             weight: numbers[10] as f32,
             radii: pair(11),
             further: Box::default(),
+            late: Box::default(),
             value: Rgb::new(numbers[13] as f32, numbers[14] as f32, numbers[15] as f32),
             gradient: pair(16),
             rotation: pair(18),

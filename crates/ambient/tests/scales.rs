@@ -127,13 +127,14 @@ fn first_order_interpolation_converges_with_the_number_of_records() {
                     corral: 0,
                     value: Rgb::splat(value as f32),
                     further: Box::default(),
+                    late: Box::default(),
                 }
             });
             assert_eq!(cache.load(records), 0);
             let answers: Vec<Rgb> = patch()
                 .iter()
                 .map(|q| match cache.ask(&Around(under_the_wave), q) {
-                    Answer::Value(v) => v,
+                    Answer::Value(light) => light.value,
                     other => panic!("{other:?} at {}", q.position),
                 })
                 .collect();

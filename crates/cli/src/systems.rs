@@ -34,6 +34,12 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
             "weigh deeper irradiance values by the actual reflectances, not by half for each bounce: fewer are shared",
         ),
         Row::new(
+            "-mixed-bounces",
+            Place::Bare(|s: &mut S| light(s).options.ambient.systems.mixed_bounces = true),
+            "let irradiance values of the first bounce answer where deeper ones are wanted with all their bounces, as in \
+             Radiance, not only with those that -ab leaves there",
+        ),
+        Row::new(
             "-neighbor-clamping",
             Place::Bare(|s: &mut S| light(s).options.ambient.systems.neighbour_clamping = true),
             "let no irradiance value reach farther than a neighbor does, plus the distance between them",

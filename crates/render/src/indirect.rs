@@ -48,7 +48,14 @@ impl<O: Observer> Walk<'_, O> {
         }
         match self.cache.ask(self.tracer, &query) {
             Answer::Fallback(_) if self.is_endless() => self.survive(ray, coefficient, query),
-            Answer::Value(v) | Answer::Fallback(v) => ray.value += coefficient * v,
+            Answer::Value(light) => {
+                ray.value += coefficient * light.value;
+                if ray.depth > 0 {
+                    let k = ray.throughput * ray.attenuation() * coefficient;
+                    self.work.late.iter_mut().zip(light.late).for_each(|(sum, late)| *sum += k * late);
+                }
+            }
+            Answer::Fallback(v) => ray.value += coefficient * v,
             Answer::Miss => {
                 let k = ray.throughput * ray.attenuation() * coefficient;
                 self.misses.push(Miss { coefficient: k, query });

@@ -16,7 +16,7 @@ use crate::tracer::{Origin, Tracer};
 use crate::walk::Walk;
 use crate::work::Work;
 use crate::{Error, Options};
-use ambit_ambient::{Cache, Miss, Params};
+use ambit_ambient::{Cache, Miss, Params, Systems};
 use ambit_base::{DVec3, FAR, Notify, Rgb, Stream, hash_bits};
 use ambit_scene::{ObjectId, VOID};
 use std::borrow::Cow;
@@ -216,7 +216,8 @@ fn params(options: &Options, passes: usize) -> Params {
         overlap: a.overlap,
         passes: passes as u8,
         seed: options.seed,
-        systems: a.systems,
+        // Without an end to bounces none is the last.
+        systems: Systems { mixed_bounces: a.systems.mixed_bounces || a.unbounded, ..a.systems },
     }
 }
 

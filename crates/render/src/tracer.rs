@@ -6,7 +6,7 @@ use crate::ray::{ClipSet, Fate, Interior, Kinds, Ray};
 use crate::sources::Tally;
 use crate::walk::Walk;
 use crate::work::Work;
-use ambit_ambient::{Cache, Miss, Query, Sample, SampleRay, Sampler};
+use ambit_ambient::{Cache, Light, Miss, Query, Sample, SampleRay, Sampler};
 use ambit_base::{DVec3, EPSILON, FAR, Rgb, Stream, Vec3};
 use ambit_trace::Opacity;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -96,10 +96,11 @@ impl Tracer<'_> {
         match ray.fate(true, &self.options.limits) {
             Fate::Alive => {}
             // A path that Russian roulette ends brings nothing, and that is its fair share.
-            Fate::Unlucky => return Some(Sample { radiance: Rgb::ZERO, distance: FAR, normal: Vec3::ZERO }),
+            Fate::Unlucky => return Some(Sample { light: Rgb::ZERO.into(), distance: FAR, normal: Vec3::ZERO }),
             Fate::Refused => return None,
         }
         let first = misses.len();
+        work.late = Default::default();
         let mut walk = Walk { tracer: self, cache, work, misses, pass, observer: () };
         walk.evaluate(&mut ray);
         let rest = walk.endless(first);
@@ -109,7 +110,8 @@ impl Tracer<'_> {
             Some(hit) if distance == hit.distance => hit.normal.as_vec3(),
             _ => Vec3::ZERO,
         };
-        Some(Sample { radiance: ray.value * ray.coefficient + rest, distance, normal })
+        let light = Light { value: ray.value * ray.coefficient + rest, late: work.late };
+        Some(Sample { light, distance, normal })
     }
 
     /// This thread's scratch memory. The lock is never waited for: each thread of the pool has its own, and a thread

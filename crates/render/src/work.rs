@@ -1,12 +1,15 @@
 //! Scratch memory and counters of one thread: nothing on the ray path allocates once these have grown.
 
 use crate::sources::{Candidate, Count, Part, SourceId, Tally};
+use ambit_base::Rgb;
 
 /// What one thread reuses from ray to ray.
 #[derive(Debug)]
 pub(crate) struct Work {
     /// Rays traced.
     pub(crate) rays: u64,
+    /// What of a hemisphere sample's light the last bounces brought, as the cache answered.
+    pub(crate) late: [Rgb; 2],
     pub(crate) candidates: Vec<Candidate>,
     pub(crate) parts: Vec<Part>,
     /// Candidates as they are ranked.
@@ -22,6 +25,7 @@ impl Work {
     pub(crate) fn new(sources: usize) -> Self {
         Self {
             rays: 0,
+            late: [Rgb::ZERO; 2],
             candidates: Vec::new(),
             parts: Vec::new(),
             ranks: Vec::new(),

@@ -43,6 +43,7 @@ fn record(number: u32) -> Record {
         corral: number,
         value: Rgb::new(1.0, 0.5, 0.25),
         further: Box::default(),
+        late: Box::default(),
     }
     .quantised(&RGB)
 }

@@ -45,6 +45,7 @@ fn record() -> Record {
         corral: 0,
         value: Rgb::ONE,
         further: Box::default(),
+        late: Box::default(),
     }
 }
 
@@ -61,11 +62,11 @@ fn query(x: f64, y: f64, z: f64) -> Query<()> {
 }
 
 fn answer(records: &[Record], wall: &Wall, query: &Query<()>) -> Option<Rgb> {
-    let mut store = Store::new(DVec3::splat(-2.0), 4.0, 1);
+    let mut store = Store::new(DVec3::splat(-2.0), 4.0, 1, false);
     for r in records {
         assert!(store.insert(r, 0.2));
     }
-    store.lookup(&limits(), wall, query).answer()
+    store.lookup(&limits(), wall, query).answer().map(|light| light.value)
 }
 
 fn accepts(record: &Record, query: &Query<()>) -> bool {
@@ -176,7 +177,7 @@ fn every_record_in_reach_is_found() {
     // Records of many radii, compared with a search through all of them. Without early-out: tolerance × cell > R₋ fails
     // for the smallest cells only, so the limits are widened until it never holds.
     let wide = Limits { min_radius: 4.0, ..limits() };
-    let mut store = Store::new(DVec3::splat(-2.0), 4.0, 1);
+    let mut store = Store::new(DVec3::splat(-2.0), 4.0, 1, false);
     let number = |k: u32, tag| Stream::new(k, tag).one();
     let records: Vec<Record> = (0..3000)
         .map(|k| {
@@ -209,7 +210,7 @@ fn every_record_in_reach_is_found() {
                 sum += (1.0 - distance / 0.2) * f64::from(r.value.x);
             }
         }
-        let found = store.lookup(&wide, &OPEN, &q).answer();
+        let found = store.lookup(&wide, &OPEN, &q).answer().map(|light| light.value);
         answered += usize::from(found.is_some());
         match found {
             Some(v) => {

@@ -1,7 +1,7 @@
 //! Counting changes nothing, and counts the same on any number of threads.
 
 use super::room::Room;
-use crate::{Answer, Cache, Observed, Params};
+use crate::{Answer, Cache, Light, Observed, Params};
 use ambit_base::{Colour, DVec3, Rgb};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -32,7 +32,7 @@ fn observed(observe: bool, threads: usize) -> (Vec<Answer>, Option<Observed>, f6
             let parts = cache.store.contributions(cache.limits(), &room, &m.query);
             let weight: f32 = parts.iter().map(|p| p.0).sum();
             let mean = parts.iter().map(|p| p.1 * p.0).sum::<Rgb>() / weight;
-            if let (Answer::Value(value), true) = (answer, weight > 1e-5) {
+            if let (Answer::Value(Light { value, .. }), true) = (answer, weight > 1e-5) {
                 assert!((mean - *value).abs().max_element() <= 1e-4 * value.max_element(), "{mean} {value}");
             }
         }

@@ -139,9 +139,9 @@ impl Room {
         stream: Stream,
     ) -> (Sample, Option<Miss<()>>) {
         match self.hit(query.position, direction) {
-            None => (Sample { radiance: Rgb::ZERO, distance: FAR, normal: Vec3::ZERO }, None),
+            None => (Sample { light: Rgb::ZERO.into(), distance: FAR, normal: Vec3::ZERO }, None),
             Some(h) if h.lamp => {
-                (Sample { radiance: Rgb::ZERO, distance: h.distance, normal: h.normal.as_vec3() }, None)
+                (Sample { light: Rgb::ZERO.into(), distance: h.distance, normal: h.normal.as_vec3() }, None)
             }
             Some(h) => {
                 let radiance = h.reflectance * self.direct(h.position, h.normal, stream);
@@ -154,7 +154,7 @@ impl Room {
                     pass: query.pass,
                     origin: (),
                 };
-                let sample = Sample { radiance, distance: h.distance, normal: h.normal.as_vec3() };
+                let sample = Sample { light: radiance.into(), distance: h.distance, normal: h.normal.as_vec3() };
                 (sample, Some(Miss { coefficient: h.reflectance, query: next }))
             }
         }
@@ -219,7 +219,8 @@ impl Sampler for Room {
         let (mut sample, question) = self.look(query, direction, weight, stream);
         if let Some(miss) = question {
             match cache.ask(self, &miss.query) {
-                Answer::Value(v) | Answer::Fallback(v) => sample.radiance += miss.coefficient * v,
+                Answer::Value(light) => sample.light += light.times(miss.coefficient),
+                Answer::Fallback(v) => sample.light.value += miss.coefficient * v,
                 Answer::Miss => misses.push(miss),
                 Answer::Uncached => unreachable!("these tests cache"),
             }

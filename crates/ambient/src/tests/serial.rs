@@ -6,13 +6,13 @@ use crate::finish::{Cell, Outcome, finish};
 use crate::hemisphere::Hemisphere;
 use crate::params::{Limits, Params};
 use crate::supersample::{allocate, budget};
-use crate::{Cache, Query};
-use ambit_base::{Colour, Rgb, Stream};
+use crate::{Cache, Light, Query};
+use ambit_base::{Colour, Stream};
 
 /// Answers a question, computing records on the way; counts the samples of each level.
-pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &mut [u64]) -> Rgb {
+pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &mut [u64]) -> Light {
     if cache.ends_at(query.level) {
-        return cache.fallback();
+        return cache.fallback().into();
     }
     if let Some(value) = cache.lookup(room, query) {
         return value;
@@ -25,29 +25,29 @@ pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &m
         let (mut sample, question) = room.look(query, direction, plan.child_weight(), plan.stream(number));
         samples[usize::from(query.level)] += 1;
         if let Some(miss) = question {
-            sample.radiance += miss.coefficient * ask(cache, room, &miss.query, samples);
+            sample.light += ask(cache, room, &miss.query, samples).times(miss.coefficient);
         }
         sample
     };
     let mut cells: Vec<Cell> = (0..plan.len())
         .map(|k| {
             let s = look(cache, plan.direction(k), k);
-            Cell { radiance: s.radiance, distance: s.distance, nearness: 1.0 / s.distance, normal: s.normal }
+            Cell { light: s.light, distance: s.distance, nearness: 1.0 / s.distance, normal: s.normal }
         })
         .collect();
-    let brightness: Vec<f32> = cells.iter().map(|c| c.radiance.brightness()).collect();
+    let brightness: Vec<f32> = cells.iter().map(|c| c.light.value.brightness()).collect();
     let budget = budget(params.super_samples, share, plan.grid().side());
     let counts = allocate([plan.grid().rows(), plan.grid().columns()], &brightness, budget, |c| plan.share(c));
     let mut number = plan.len();
     for (cell, &count) in counts.iter().enumerate() {
-        let mut sum = cells[cell].radiance;
+        let mut sum = cells[cell].light;
         for k in 0..count {
             let s = look(cache, plan.frame().to_world(plan.extra_local(cell, k)), number);
             number += 1;
-            sum += s.radiance;
+            sum += s.light;
             cells[cell].nearness = cells[cell].nearness.max(1.0 / s.distance);
         }
-        cells[cell].radiance = sum / (count + 1) as f32;
+        cells[cell].light = sum * (1.0 / (count + 1) as f32);
     }
     match finish(&cache.limits, query, &plan, &cells) {
         Outcome::Record(record, value) => {
@@ -55,6 +55,6 @@ pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &m
             value
         }
         Outcome::Once(value) => value,
-        Outcome::Nothing => cache.fallback(),
+        Outcome::Nothing => cache.fallback().into(),
     }
 }

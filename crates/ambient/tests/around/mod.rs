@@ -25,7 +25,7 @@ impl<F: Fn(DVec3, DVec3) -> (f32, f64) + Sync> Sampler for Around<F> {
     ) -> Option<Sample> {
         assert_eq!(weight, 0.5);
         let (radiance, distance) = (self.0)(query.position, direction);
-        Some(Sample { radiance: Rgb::splat(radiance), distance, normal: Vec3::ZERO })
+        Some(Sample { light: Rgb::splat(radiance).into(), distance, normal: Vec3::ZERO })
     }
 
     fn occluded(&self, _: &Query<()>, _: DVec3, _: DVec3) -> bool {

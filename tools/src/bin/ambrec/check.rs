@@ -170,6 +170,7 @@ mod tests {
             corral: k,
             value: Rgb::ONE,
             further: Box::default(),
+            late: Box::default(),
         }
         .quantised(&Components::default())
     }
