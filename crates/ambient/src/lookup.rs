@@ -89,14 +89,13 @@ impl Sum {
 }
 
 /// Adds one record to the sum, returning its weight; 0 if it does not qualify. Level and weight are tested by the caller.
-/// `value` is its value in the pass that asks.
+/// The record's value is that in the pass that asks.
 #[inline]
 pub(crate) fn accumulate<S: Sampler>(
     asked: &Asked,
     angle: f32,
     place: &Place,
-    derived: &Derived,
-    value: &Rgb,
+    (derived, value): (&Derived, &Rgb),
     sampler: &S,
     query: &Query<S::Origin>,
     sum: &mut Sum,

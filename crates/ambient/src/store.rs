@@ -165,9 +165,9 @@ impl Store {
 
     /// What a record answers in a pass at its own place.
     #[inline]
-    fn value(&self, id: usize, pass: u8) -> &Rgb {
+    fn value<'a>(&'a self, derived: &'a Derived, id: usize, pass: u8) -> &'a Rgb {
         match pass {
-            0 => &self.derived[id].value,
+            0 => &derived.value,
             _ => &self.further[id * self.further_passes + usize::from(pass) - 1],
         }
     }
@@ -323,8 +323,9 @@ impl Store {
                     break;
                 }
                 let mut sum = Sum::EMPTY;
-                let (derived, value) = (&self.derived[id as usize], self.value(id as usize, query.pass));
-                let own = accumulate(&asked, angle, place, derived, value, sampler, query, &mut sum);
+                let derived = &self.derived[id as usize];
+                let value = self.value(derived, id as usize, query.pass);
+                let own = accumulate(&asked, angle, place, (derived, value), sampler, query, &mut sum);
                 if own > 0.0 {
                     weight += own;
                     found.extend(sum.answer().map(|value| (own, value)));
@@ -382,8 +383,9 @@ impl<S: Sampler> Search<'_, S> {
                 if deeper || place.level == self.asked.level && place.weight < self.asked.least_weight {
                     return weight;
                 }
-                let (derived, value) = (&store.derived[id], store.value(id, self.query.pass));
-                weight += accumulate(&self.asked, angle, place, derived, value, self.sampler, self.query, sum);
+                let derived = &store.derived[id];
+                let value = store.value(derived, id, self.query.pass);
+                weight += accumulate(&self.asked, angle, place, (derived, value), self.sampler, self.query, sum);
             }
         }
         weight
