@@ -6,7 +6,7 @@ Checks, one line of the table each:
   NAME sensors       irradiance at the scene's sensors: mean, and RMS error against converged values
   NAME octree        octrees of either side, frozen or not, read by both: the same answers
   NAME ambient       ambient files of either side, continued by the other
-  NAME wavelength    the same by wavelength (-cs 9)
+  NAME wavelength    the same by wavelength (-cs 9), plastics made spectral
   NAME lookamb       our lookamb and theirs print both sides' ambient files alike
   types TYPE         picture of fixtures/types/TYPE.rad, nothing random: means, and pixel by pixel
 """
@@ -202,11 +202,11 @@ def records(side, path):
     return numbers(side.run("lookamb", ["-h", "-d", path], path.parent))
 
 
-def ambient(scene, ours, theirs, kind="ambient", more=()):
+def ambient(scene, ours, theirs, kind="ambient", more=(), octree=None):
     """Each side makes a file; the other continues it: it must use the records and add hardly any."""
     check, work = f"{scene.name} {kind}", folder("exchange", scene.name, kind)
     view, lines, good = scene.folder / scene.views[0], [], True
-    octrees = {s.name: scene.octree(s, work / f"{s.name}.oct") for s in (ours, theirs)}
+    octrees = {s.name: (octree or scene.octree)(s, work / f"{s.name}.oct") for s in (ours, theirs)}
     def render(side, file, out):
         arguments = ["-vf", view, "-x", SIZE, "-y", SIZE, *CACHED, *more, "-af", file, octrees[side.name]]
         side.run("rpict", arguments, scene.folder, out=work / out)
@@ -228,7 +228,14 @@ def ambient(scene, ours, theirs, kind="ambient", more=()):
 
 
 def wavelength(scene, ours, theirs):
-    return ambient(scene, ours, theirs, "wavelength", ["-cs", 9])
+    tint = "void spectrum tint 0 0 8 400 700 .5 .7 .9 1 1 .8\n"
+    text = tint + "\n".join((scene.folder / file).read_text() for file in scene.files)
+    def octree(side, out):
+        tinted = out.with_suffix(".rad")
+        tinted.write_text(re.sub(r"^void\s+plastic\b", "tint plastic", text, flags=re.M))
+        side.run("oconv", ["-f", "-w", tinted], scene.folder, out=out)
+        return out
+    return ambient(scene, ours, theirs, "wavelength", ["-cs", 9], octree)
 
 
 def lookamb(scene, ours, theirs):

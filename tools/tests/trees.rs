@@ -103,8 +103,10 @@ fn hemispheres_are_followed_in_all_bins() {
     // What a ray brings by its hemisphere is the mean of what the hemisphere's rays bring, in every bin.
     let (plain, direct) = (rtrace(&octree, &format!("{options} -ov"), ray), rtrace(&octree, "-cs 9 -co+ -ov", ray));
     assert_eq!(plain.trim_end(), lines[lines.len() - 1].trim_end());
-    let mut sums = vec![0.0; 9];
-    children.iter().for_each(|l| sums.iter_mut().zip(numbers(l)).for_each(|(sum, v)| *sum += v));
+    let mut sums = [0.0; 9];
+    for child in children {
+        sums.iter_mut().zip(numbers(child)).for_each(|(sum, v)| *sum += v);
+    }
     for (bin, (whole, direct)) in numbers(&plain).into_iter().zip(numbers(&direct)).enumerate() {
         assert!((sums[bin] - (whole - direct)).abs() <= 1e-4 * whole, "bin {bin}: {} of {}", sums[bin], whole - direct);
     }

@@ -39,14 +39,18 @@ pub(crate) fn trace<S: Sampler>(
         let samples = task * CHUNK..count.min((task + 1) * CHUNK);
         let mut part = Sampled::with_capacity(samples.len() * passes.len(), 0);
         let mut scratch = sampler.scratch();
+        let mut follow = |ray: &SampleRay| {
+            let returned = sampler.sample(&mut scratch, cache, query, ray, &mut part.misses);
+            let index = part.returned.len() as u32;
+            part.owners.resize(part.misses.len(), index);
+            part.returned.push(returned.map(|s| repair(s, &mut part.repaired)));
+        };
         for sample in samples {
             let mut ray = ray(sample);
-            for pass in passes.clone() {
-                ray.pass = pass;
-                let returned = sampler.sample(&mut scratch, cache, query, &ray, &mut part.misses);
-                let index = part.returned.len() as u32;
-                part.owners.resize(part.misses.len(), index);
-                part.returned.push(returned.map(|s| repair(s, &mut part.repaired)));
+            ray.pass = passes.start;
+            follow(&ray);
+            for pass in passes.start + 1..passes.end {
+                follow(&SampleRay { pass, ..ray });
             }
         }
         part

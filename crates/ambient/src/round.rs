@@ -206,10 +206,14 @@ impl<S: Sampler> Round<'_, S> {
             returned = rest;
             for (pass, cell) in cells[run[0].0 * passes..][..passes].iter_mut().enumerate() {
                 let (mut sum, mut count) = (cell.light, 1.0);
-                for sample in own.iter().skip(pass).step_by(passes).flatten() {
-                    sum += sample.light;
-                    count += 1.0;
-                    cell.nearness = cell.nearness.max(1.0 / sample.distance.max(least));
+                let mut at = pass;
+                while let Some(sample) = own.get(at) {
+                    if let Some(sample) = sample {
+                        sum += sample.light;
+                        count += 1.0;
+                        cell.nearness = cell.nearness.max(1.0 / sample.distance.max(least));
+                    }
+                    at += passes;
                 }
                 cell.light = sum * (1.0 / count);
             }

@@ -173,19 +173,13 @@ impl Store {
         self.places[id as usize].inverse_radii = radii.map(f32::recip);
     }
 
-    /// What a record answers in a pass at its own place.
-    #[inline]
-    fn value(&self, id: usize, pass: u8) -> &Rgb {
-        match pass {
-            0 => &self.derived[id].value,
-            _ => &self.further[id * self.further_passes + usize::from(pass) - 1],
-        }
-    }
-
     /// What a record answers at its own place. Of questions of the eye's nobody wants to know what the last bounces brought.
     #[inline]
-    fn light<O>(&self, id: usize, level: u8, query: &Query<O>) -> Light {
-        let value = *self.value(id, query.pass);
+    fn light<O>(&self, derived: &Derived, id: usize, level: u8, query: &Query<O>) -> Light {
+        let value = match query.pass {
+            0 => derived.value,
+            pass => self.further[id * self.further_passes + usize::from(pass) - 1],
+        };
         if query.level == 0 || !self.apart {
             return value.into();
         }
@@ -344,8 +338,9 @@ impl Store {
                     break;
                 }
                 let mut sum = Sum::EMPTY;
-                let (derived, light) = (&self.derived[id as usize], || self.light(id as usize, place.level, query));
-                let own = accumulate(&asked, angle, place, derived, light, sampler, query, &mut sum);
+                let derived = &self.derived[id as usize];
+                let light = || self.light(derived, id as usize, place.level, query);
+                let own = accumulate(&asked, angle, place, (derived, light), sampler, query, &mut sum);
                 if own > 0.0 {
                     weight += own;
                     found.extend(sum.answer().map(|light| (own, light.value)));
@@ -403,8 +398,9 @@ impl<S: Sampler> Search<'_, S> {
                 if deeper || place.level == self.asked.level && place.weight < self.asked.least_weight {
                     return weight;
                 }
-                let (derived, light) = (&store.derived[id], || store.light(id, place.level, self.query));
-                weight += accumulate(&self.asked, angle, place, derived, light, self.sampler, self.query, sum);
+                let derived = &store.derived[id];
+                let light = || store.light(derived, id, place.level, self.query);
+                weight += accumulate(&self.asked, angle, place, (derived, light), self.sampler, self.query, sum);
             }
         }
         weight

@@ -134,7 +134,8 @@ impl Renderer {
         let mut misses = Vec::new();
         let mut owners = Vec::new();
         for (i, (answer, further, own)) in shaded.into_iter().enumerate() {
-            answers.iter_mut().zip(std::iter::once(answer).chain(further)).for_each(|(all, answer)| all.push(answer));
+            answers[0].push(answer);
+            answers[1..].iter_mut().zip(further).for_each(|(all, answer)| all.push(answer));
             owners.extend(std::iter::repeat_n(first + i, own.len()));
             misses.extend(own);
         }

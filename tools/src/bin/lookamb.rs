@@ -156,7 +156,7 @@ fn to_binary(bytes: &[u8], name: &str, options: Options, line: &[u8], out: &mut 
     while let Some(record) = options.form.read(&mut words) {
         match record {
             Ok(record) => {
-                out.write_all(&Layout::CURRENT.encode(&record, &Components::default())).map_err(Failure::Output)?
+                out.write_all(&Layout::CURRENT.encode(&record, &Components::default())).map_err(Failure::Output)?;
             }
             Err(problem) => {
                 // Radiance stops here without a word.

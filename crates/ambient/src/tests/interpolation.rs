@@ -70,7 +70,7 @@ fn answer(records: &[Record], wall: &Wall, query: &Query<()>) -> Option<Rgb> {
 }
 
 fn accepts(record: &Record, query: &Query<()>) -> bool {
-    answer(&[record.clone()], &OPEN, query).is_some()
+    answer(std::slice::from_ref(record), &OPEN, query).is_some()
 }
 
 fn tilted(degrees: f64) -> DVec3 {
@@ -157,7 +157,7 @@ fn extrapolation_follows_gradients_and_is_limited() {
 #[test]
 fn the_corral_is_probed_in_its_azimuths_only() {
     let fenced = Record { corral: 0b11 | 1 << 31, ..record() };
-    let ask = |x: f64, y: f64, wall| answer(&[fenced.clone()], &Wall(wall), &query(x, y, 0.0)).is_some();
+    let ask = |x: f64, y: f64, wall| answer(std::slice::from_ref(&fenced), &Wall(wall), &query(x, y, 0.0)).is_some();
     assert!(ask(0.09, 0.0, 5.0), "a flagged azimuth without an occluder");
     assert!(!ask(0.09, 0.0, 0.05), "a flagged azimuth with a wall between");
     assert!(ask(-0.09, 0.0, -0.05), "an azimuth without flag");
