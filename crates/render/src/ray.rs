@@ -6,7 +6,7 @@
 
 use crate::options::Limits;
 use crate::sources::SourceId;
-use ambit_base::{DVec3, FAR, Rgb, Stream};
+use ambit_base::{DVec3, EPSILON, FAR, Rgb, Stream};
 use ambit_scene::{ObjectId, VOID};
 use ambit_trace::Hit;
 
@@ -101,7 +101,7 @@ pub(crate) struct Ray<'p> {
     pub(crate) origin: DVec3,
     /// Unit length.
     pub(crate) direction: DVec3,
-    /// Hits at this distance or beyond are out of reach; [`FAR`] for none.
+    /// Surfaces at this distance or beyond are out of sight ([`Ray::query`]); [`FAR`] for none.
     pub(crate) limit: f64,
     pub(crate) kind: Kinds,
     /// Union of the kinds of this ray and all its ancestors.
@@ -144,6 +144,13 @@ pub(crate) struct Ray<'p> {
 pub(crate) type ClipSet = u32;
 
 impl<'p> Ray<'p> {
+    /// What is asked of the world. A surface right at the limit is out of sight whichever way its distance is rounded,
+    /// or planes that cut a scene along a wall would show it in speckles.
+    pub(crate) fn query(&self) -> ambit_trace::Ray {
+        let limit = if self.limit < FAR { self.limit - EPSILON } else { self.limit };
+        ambit_trace::Ray { origin: self.origin, direction: self.direction, limit }
+    }
+
     /// A ray without ancestors.
     pub(crate) fn primary(origin: DVec3, direction: DVec3, limit: f64, interior: Interior, stream: Stream) -> Self {
         Self {
@@ -199,7 +206,7 @@ impl<'p> Ray<'p> {
             coefficient: k,
             throughput: self.throughput * k,
             target: if kind.meets(Kinds::AIMED) { self.target } else { None },
-            limit: if !kind.meets(Kinds::RAISING) && self.limit < FAR && self.limit > ambit_base::EPSILON {
+            limit: if !kind.meets(Kinds::RAISING) && self.limit < FAR && self.limit > EPSILON {
                 self.limit - self.distance
             } else {
                 FAR

@@ -303,9 +303,10 @@ impl<O: Observer> Walk<'_, O> {
     /// Finds the nearest surface and shades nothing.
     fn locate(&mut self, ray: &mut Ray<'_>) {
         self.work.rays += 1;
-        let query = ambit_trace::Ray { origin: ray.origin, direction: ray.direction, limit: ray.limit };
-        let Some(hit) = self.tracer.scene.world.nearest(&query) else {
-            if ray.limit >= FAR {
+        let Some(hit) = self.tracer.scene.world.nearest(&ray.query()) else {
+            if ray.limit < FAR {
+                ray.point = ray.origin + ray.direction * ray.limit;
+            } else {
                 self.meet_distant(ray);
             }
             return;
