@@ -184,7 +184,11 @@ fn errors_have_their_class_and_status() {
     for (line, text, status) in [
         ("-ab1 scene.oct", "rtrace: fatal - command line error at '-ab1'", 1),
         ("", "rtrace: fatal - missing octree argument", 1),
-        ("-oq scene.oct", "rtrace: fatal - unrecognized output option 'q'", 1),
+        (
+            "-oq scene.oct",
+            "rtrace: fatal - unrecognized output option 'q' (expected letters of odrRxXvVlLcpnNswWmM~tT)",
+            1,
+        ),
         ("-fac -op scene.oct", "rtrace: fatal - color format only with -ov, -or, -ox", 1),
         ("-fac -pY scene.oct", "rtrace: fatal - color format incompatible with -pY, -pS, -pM", 1),
         ("-I -op scene.oct", "rtrace: fatal - -I+ and -i+ options require some value output", 1),
@@ -208,6 +212,7 @@ fn errors_have_their_class_and_status() {
     assert_eq!(lines[0], "rpict: fatal - view up parallel to view direction");
     assert!(lines[1].starts_with("rpict: 0 rays, 0.00% after 0.000u 0.000s 0.000r hours on "));
     for (line, text) in [
+        ("-vtz scene.oct", "rpict: fatal - unknown view type 'z' (expected one of: v, l, c, h, a, s)"),
         ("-PP file scene.oct", "rpict: fatal - persist option only for sequences"),
         ("-S 1 -r old.hdr -P file scene.oct", "rpict: fatal - persist option used with recover file"),
     ] {
@@ -261,4 +266,13 @@ fn man_pages_and_help_are_there() {
     }
     assert!(String::from_utf8_lossy(&bench.rtrace("--help", b"").stdout).contains("Usage: rtrace "));
     assert!(bench.rtrace("-version", b"").stdout.starts_with(b"RADIANCE "));
+    for (name, program) in [
+        ("oconv", env!("CARGO_BIN_EXE_oconv")),
+        ("obj2mesh", env!("CARGO_BIN_EXE_obj2mesh")),
+        ("lookamb", env!("CARGO_BIN_EXE_lookamb")),
+    ] {
+        let answer = bench.run(program, "--help", b"");
+        assert!(answer.status.success() && answer.stderr.is_empty(), "{name}");
+        assert!(String::from_utf8_lossy(&answer.stdout).starts_with(&format!("Usage: {name} ")), "{name}");
+    }
 }
