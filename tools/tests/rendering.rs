@@ -163,6 +163,69 @@ fn interrupted_pictures_are_completed() {
 }
 
 #[test]
+fn sizes_and_pixels_of_odd_pictures() {
+    let bench = Bench::new();
+    let start = |line: &str| {
+        let picture = bench.rpict(&format!("{line} scene.oct"), b"").stdout;
+        let end = picture.windows(3).position(|w| w == b"+X ").unwrap() + 11;
+        String::from_utf8(picture[..end].to_vec()).unwrap()
+    };
+    // Nothing in one direction is nothing at all.
+    assert!(start("-w -vtl -vh 1000 -x 8 -y 8").ends_with("\n\n-Y        0 +X        0"));
+    // What is recovered has the pixels that view and size come to.
+    let whole = bench.rpict("-w -vh 90 -vv 75 -x 20 -y 20 scene.oct", b"").stdout;
+    assert!(!String::from_utf8_lossy(&whole).contains("PIXASPECT"));
+    std::fs::write(bench.path("part.hdr"), &whole[..whole.len() / 2]).unwrap();
+    assert!(start("-w -r part.hdr").contains("\nPIXASPECT=1.023103\n"));
+}
+
+#[test]
+fn trees_have_no_number_of_components() {
+    let bench = Bench::new();
+    for (fields, lines) in [("vs", 1), ("vts", 0), ("vt", 1), ("ot", 1), ("ts", 0), ("Tv", 0)] {
+        let answer = bench.rtrace(&format!("-w -o{fields} scene.oct"), b"");
+        let text = String::from_utf8(answer.stdout).unwrap();
+        assert_eq!(text.matches("\nNCOMP=").count(), lines, "{fields}: {text}");
+    }
+}
+
+#[test]
+fn ambient_files_name_the_program_that_made_them() {
+    let bench = Bench::new();
+    for (answer, file, line) in [
+        (bench.rtrace("-w -af one.amb scene.oct", b""), "one.amb", "#?RADIANCE\nrtrace -av 0 0 0 -aw 0 -ab 0 "),
+        (bench.rpict("-w -x 4 -af two.amb scene.oct", b""), "two.amb", "#?RADIANCE\nrpict -av 0 0 0 -aw 0 -ab 0 "),
+    ] {
+        assert!(answer.status.success());
+        assert!(std::fs::read(bench.path(file)).unwrap().starts_with(line.as_bytes()), "{file}");
+    }
+}
+
+#[test]
+fn rays_that_are_only_cast_need_no_light() {
+    let bench = Bench::new();
+    let warning = "rtrace: warning - no light sources found\n";
+    for (line, text) in [("-h -osL scene.oct", ""), ("-h -osLv scene.oct", warning)] {
+        assert_eq!(String::from_utf8_lossy(&bench.rtrace(line, RAYS).stderr), text, "{line}");
+    }
+}
+
+#[test]
+fn names_keep_their_bytes() {
+    let bench = Bench::new();
+    // Two names in Latin-1 that differ in one letter, neither of which is UTF-8.
+    let scene = b"void glow gr\xfcn 0 0 4 0 1 0 0 void glow gr\xe4n 0 0 4 1 0 0 0 gr\xfcn sphere s\xf6 0 0 4 0 0 0 1";
+    std::fs::write(bench.path("latin.rad"), scene).unwrap();
+    for option in ["", "-f "] {
+        let octree = bench.run(env!("CARGO_BIN_EXE_oconv"), &format!("{option}latin.rad"), b"").stdout;
+        std::fs::write(bench.path("latin.oct"), octree).unwrap();
+        let answer = bench.rtrace("-h -w -osm~v latin.oct", b"0 0 3 0 0 -1");
+        let line = b"s\xf6\tgr\xfcn\t~\t0.000000e+00\t1.000000e+00\t0.000000e+00\t\n";
+        assert_eq!(answer.stdout, line, "{}", String::from_utf8_lossy(&answer.stdout));
+    }
+}
+
+#[test]
 fn frames_that_exist_are_not_made_again() {
     let bench = Bench::new();
     let views = b"VIEW= -vh 50\nVIEW= -vh 60\nVIEW= -vh 70\n";

@@ -19,7 +19,6 @@ use crate::{Error, Options};
 use ambit_ambient::{Cache, Miss, Params};
 use ambit_base::{DVec3, FAR, Notify, Rgb, Stream, hash_bits};
 use ambit_scene::{ObjectId, VOID};
-use std::borrow::Cow;
 use std::sync::{Mutex, PoisonError};
 
 /// Most requests that are shaded against one state of the cache.
@@ -195,9 +194,9 @@ impl Renderer {
         outlines(&self.scene.sources)
     }
 
-    /// Identifier of an object; `*` for [`VOID`] as a surface is the caller's affair.
-    pub fn name(&self, id: ObjectId) -> Cow<'_, str> {
-        if id == VOID { Cow::Borrowed("void") } else { self.scene.objects.name(id) }
+    /// Identifier of an object, in whatever encoding the scene has; `*` for [`VOID`] as a surface is the caller's affair.
+    pub fn name(&self, id: ObjectId) -> &[u8] {
+        if id == VOID { b"void" } else { self.scene.objects.name_bytes(id) }
     }
 }
 

@@ -87,7 +87,8 @@ impl Frame {
     pub(crate) fn take_over(&mut self, recovered: Option<Recovered>) {
         if let Some(r) = &recovered {
             (self.width, self.height) = r.size;
-            self.pixel_aspect = r.pixel_aspect;
+            // What the view and the size come to, whatever was asked for then.
+            self.pixel_aspect = fit_resolution(self.view.aspect(), 0.0, self.width, self.height).pixel_aspect;
         }
         self.recovered = recovered;
     }
@@ -104,14 +105,16 @@ impl Picture<'_> {
         let mut head = Vec::new();
         // Writing to memory does not fail.
         let _ = self.header(frame, &scene.header, frame.first).write(&mut head);
-        head.extend_from_slice(resolution_line(width, height).as_bytes());
+        let empty = width == 0 || height == 0;
+        let (columns, rows) = if empty { (0, 0) } else { (width, height) };
+        head.extend_from_slice(resolution_line(columns, rows).as_bytes());
         output.head(&head)?;
         if let Some(r) = &frame.recovered {
             output.codes(&r.lines)?;
             std::fs::remove_file(&r.file)
                 .map_err(|e| Failure::system(format!("cannot remove \"{}\"", r.file.display()), &e))?;
         }
-        if width == 0 || height == 0 {
+        if empty {
             self.session.messages.warn("empty output picture");
             return Ok(());
         }
