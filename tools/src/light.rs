@@ -35,6 +35,8 @@ pub(crate) struct Scene<'a> {
     spectrum: Option<Spectral>,
     /// Of the scene, until the ambient file is opened, if there is one.
     fingerprint: Option<SceneFingerprint>,
+    /// The statistics have been printed.
+    told: bool,
     /// The octree's header.
     pub(crate) header: Header,
 }
@@ -87,7 +89,7 @@ impl<'a> Scene<'a> {
         let spectrum = &rendering.options.spectrum;
         let spectrum = (!spectrum.is_rgb())
             .then(|| Spectral { spectra: None, conversion: SpectralConversion::new(output, spectrum) });
-        Ok(Self { session, renderer, spectrum, fingerprint, header })
+        Ok(Self { session, renderer, spectrum, fingerprint, told: false, header })
     }
 
     /// Begins anew with an empty cache, the seed of `settings`, and what of them trades time for error.
@@ -126,12 +128,20 @@ impl<'a> Scene<'a> {
     /// Closes the ambient file; call it whatever happened.
     pub(crate) fn close(mut self) -> Result<(), Stop> {
         let result = self.renderer.finish(&self.session.messages).map_err(failed);
+        self.tell();
+        result
+    }
+
+    /// Prints the statistics, unless that has been done.
+    pub(crate) fn tell(&mut self) {
+        if std::mem::replace(&mut self.told, true) {
+            return;
+        }
         if let Some(report) = self.renderer.report() {
             for line in crate::statistics::lines(&report, self.session.meter.seconds()) {
                 self.session.messages.print(format_args!("statistics - {line}"));
             }
         }
-        result
     }
 }
 

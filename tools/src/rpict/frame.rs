@@ -125,6 +125,10 @@ impl Picture<'_> {
         let lines = |left: u32| 100.0 * f64::from(height - left) / f64::from(height);
         let mut watch = Watch::start(self.session, options.report, lines(height - done));
         self.compute(frame, height - done, scene, &mut output, &mut watch)?;
+        if options.report > 0 && frame.number.is_none() {
+            // What reads the last line to see if a picture is done shall find the last report there.
+            scene.tell();
+        }
         watch.finish();
         Ok(())
     }
