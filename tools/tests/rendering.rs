@@ -172,6 +172,10 @@ fn sizes_and_pixels_of_odd_pictures() {
     };
     // Nothing in one direction is nothing at all.
     assert!(start("-w -vtl -vh 1000 -x 8 -y 8").ends_with("\n\n-Y        0 +X        0"));
+    let wide = bench.rpict("-w -pa 0 -x 70000 -y 1 scene.oct", b"");
+    let text = "rpict: fatal - a picture of 70000 by 1 pixels (more than 65535 across) is not supported\n";
+    assert_eq!(wide.status.code(), Some(1));
+    assert!(wide.stdout.is_empty() && String::from_utf8_lossy(&wide.stderr).starts_with(text));
     // What is recovered has the pixels that view and size come to.
     let whole = bench.rpict("-w -vh 90 -vv 75 -x 20 -y 20 scene.oct", b"").stdout;
     assert!(!String::from_utf8_lossy(&whole).contains("PIXASPECT"));

@@ -13,6 +13,9 @@ use ambit_file::{PixelSpace, Projection, View, fit_resolution};
 use ambit_render::picture::{Band, Camera, Lens, Order, Pixel, PixelRequest, Sampler, SmallSources};
 use ambit_render::{Answer, Request};
 
+/// Most pixels across: samples are numbered along a Hilbert curve by 32 bits.
+const MOST_ACROSS: u32 = 65535;
+
 /// What is common to all pictures of a run.
 pub(crate) struct Picture<'a> {
     pub(crate) session: &'a Session,
@@ -50,7 +53,7 @@ pub(crate) fn set_up(view: &View) -> Result<Projection, Failure> {
 impl Frame {
     /// A frame of this view, to standard output.
     pub(crate) fn new(view: Projection, options: &PictureOptions) -> Self {
-        let size = |v: i32| v.clamp(0, u16::MAX.into()) as u32;
+        let size = |v: i32| v.max(0) as u32;
         let fit = fit_resolution(view.aspect(), options.pixel_aspect, size(options.width), size(options.height));
         Self {
             number: None,
@@ -100,6 +103,10 @@ impl Picture<'_> {
         let options = self.options;
         self.session.meter.set_percent(0.0);
         let (width, height) = (frame.width, frame.height);
+        if width.max(height) > MOST_ACROSS {
+            let what = format!("a picture of {width} by {height} pixels (more than {MOST_ACROSS} across) is");
+            return Err(Failure::unsupported(&what).into());
+        }
         let done = frame.recovered.as_ref().map_or(0, |r| r.lines.len() as u32);
         let mut output = PictureOutput::open(frame.output.as_deref(), frame.distances.as_deref(), done, width)?;
         let mut head = Vec::new();
