@@ -215,6 +215,27 @@ fn rays_that_are_only_cast_need_no_light() {
 }
 
 #[test]
+fn rays_between_mirrors_do_not_overflow_the_stack() {
+    let bench = Bench::new();
+    // Two mirrors face each other; perfect ones never let a ray go.
+    for reflectance in ["0.995", "1"] {
+        let scene = format!(
+            "void metal m 0 0 5 {reflectance} {reflectance} {reflectance} 1 0 \
+             m ring low 0 0 8 0 0 0 0 0 1 0 9 m ring high 0 0 8 0 0 1 0 0 -1 0 9"
+        );
+        std::fs::write(bench.path("mirrors.rad"), scene).unwrap();
+        let octree = bench.run(env!("CARGO_BIN_EXE_oconv"), "mirrors.rad", b"").stdout;
+        std::fs::write(bench.path("mirrors.oct"), octree).unwrap();
+        for threads in [1, 2] {
+            let line = format!("-h -w -lr 0 -n {threads} mirrors.oct");
+            let answer = bench.rtrace(&line, "0 0 .5 .00001 0 1\n".repeat(32).as_bytes());
+            let lines = String::from_utf8_lossy(&answer.stdout).lines().count();
+            assert_eq!((answer.status.code(), lines), (Some(0), 32), "{reflectance} {threads}");
+        }
+    }
+}
+
+#[test]
 fn names_keep_their_bytes() {
     let bench = Bench::new();
     // Two names in Latin-1 that differ in one letter, neither of which is UTF-8.

@@ -94,6 +94,10 @@ pub(crate) fn transmittance(extinction: Rgb, distance: f64) -> Rgb {
     Rgb::new(one(extinction.x), one(extinction.y), one(extinction.z))
 }
 
+/// Reflections after which a ray ends whatever `-lr` says. A ray waits on the stack for those that follow from it, some 4 kB
+/// each, and between perfect mirrors there is no end; mirrors that keep .999 have lost all but e^-10 by then.
+const MOST_REFLECTIONS: i32 = 10_000;
+
 /// A ray, and after evaluation what it met and what it is worth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ray<'p> {
@@ -244,6 +248,9 @@ impl<'p> Ray<'p> {
         }
         if self.lineage.meets(Kinds::SHADOW) {
             return Fate::Alive;
+        }
+        if self.level > MOST_REFLECTIONS {
+            return Fate::Refused;
         }
         let least = limits.weight as f32;
         if limits.reflections <= 0 && has_coefficient {
