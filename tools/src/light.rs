@@ -11,7 +11,6 @@ use ambit_render::{
     load,
 };
 use ambit_scene::{ErrorClass, ObjectId};
-use std::borrow::Cow;
 use std::path::Path;
 
 /// What answers rays: the renderer, or a stand-in for tests.
@@ -25,7 +24,7 @@ pub(crate) trait Light {
         None
     }
     /// The name of an object.
-    fn name(&self, id: ObjectId) -> Cow<'_, str>;
+    fn name(&self, id: ObjectId) -> &[u8];
 }
 
 /// A scene that is lit.
@@ -36,6 +35,8 @@ pub(crate) struct Scene<'a> {
     spectrum: Option<Spectral>,
     /// Of the scene, until the ambient file is opened, if there is one.
     fingerprint: Option<SceneFingerprint>,
+    /// The statistics have been printed.
+    told: bool,
     /// The octree's header.
     pub(crate) header: Header,
 }
@@ -83,11 +84,12 @@ impl<'a> Scene<'a> {
         let header = loaded.header().clone();
         let ambient = rendering.ambient_file.as_ref().filter(|_| !casting);
         let fingerprint = ambient.map(|_| loaded.fingerprint(&environment));
-        let renderer = Renderer::new(loaded, rendering.options.clone(), &environment).map_err(failed)?;
+        let options = Options { casting, ..rendering.options.clone() };
+        let renderer = Renderer::new(loaded, options, &environment).map_err(failed)?;
         let spectrum = &rendering.options.spectrum;
         let spectrum = (!spectrum.is_rgb())
             .then(|| Spectral { spectra: None, conversion: SpectralConversion::new(output, spectrum) });
-        Ok(Self { session, renderer, spectrum, fingerprint, header })
+        Ok(Self { session, renderer, spectrum, fingerprint, told: false, header })
     }
 
     /// Begins anew with an empty cache, the seed of `settings`, and what of them trades time for error.
@@ -102,7 +104,7 @@ impl<'a> Scene<'a> {
         let ambient = rendering.ambient_file.as_ref().zip(rendering.reuse).zip(scene);
         if let Some(((file, reuse), scene)) = ambient {
             if rendering.options.ambient.accuracy > EPSILON {
-                let (header, owner) = (ambient_header(rendering, name), owner());
+                let (header, owner) = (ambient_header(&self.session.program, rendering, name), owner());
                 let fingerprint = &scene.with(&rendering.options);
                 let store = Store { path: Path::new(file), header: &header, fingerprint, reuse, owner: &owner };
                 self.renderer.share(&store, messages).map_err(failed)?;
@@ -126,12 +128,20 @@ impl<'a> Scene<'a> {
     /// Closes the ambient file; call it whatever happened.
     pub(crate) fn close(mut self) -> Result<(), Stop> {
         let result = self.renderer.finish(&self.session.messages).map_err(failed);
+        self.tell();
+        result
+    }
+
+    /// Prints the statistics, unless that has been done.
+    pub(crate) fn tell(&mut self) {
+        if std::mem::replace(&mut self.told, true) {
+            return;
+        }
         if let Some(report) = self.renderer.report() {
             for line in crate::statistics::lines(&report, self.session.meter.seconds()) {
                 self.session.messages.print(format_args!("statistics - {line}"));
             }
         }
-        result
     }
 }
 
@@ -169,7 +179,7 @@ impl Light for Scene<'_> {
         self.spectrum.as_ref()?.spectra.as_ref()
     }
 
-    fn name(&self, id: ObjectId) -> Cow<'_, str> {
+    fn name(&self, id: ObjectId) -> &[u8] {
         self.renderer.name(id)
     }
 }
@@ -194,7 +204,7 @@ fn owner() -> String {
 }
 
 /// The header lines of a new ambient file: the options that its values depend on, in Radiance's order.
-fn ambient_header(rendering: &Rendering, octree: &str) -> Vec<String> {
+fn ambient_header(program: &str, rendering: &Rendering, octree: &str) -> Vec<String> {
     let o = &rendering.options;
     let g = |x: f64| general(x, 6);
     let f = |x: f32| general(f64::from(x), 6);
@@ -221,7 +231,7 @@ fn ambient_header(rendering: &Rendering, octree: &str) -> Vec<String> {
         String::new()
     };
     let line = format!(
-        "rpict -av {} {} {} -aw {} -ab {} -aa {} -ad {} -as {} -ar {}{mist}{}{} -dr {} -ds {} -dt {} -dc {} -ss {} -st {} \
+        "{program} -av {} {} {} -aw {} -ab {} -aa {} -ad {} -as {} -ar {}{mist}{}{} -dr {} -ds {} -dt {} -dc {} -ss {} -st {} \
          -lr {} -lw {} -cw {} {} -cs {} {octree}",
         f(a.value.x),
         f(a.value.y),

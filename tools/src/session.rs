@@ -118,6 +118,24 @@ pub(crate) fn split(mut arguments: impl Iterator<Item = OsString>) -> (String, V
     (program, arguments.map(text).collect())
 }
 
+/// Bytes of stack of every thread that follows rays: enough for as many reflections as a ray may have, one waiting for the
+/// next. Only what is used takes memory.
+const STACK: usize = 128 << 20;
+
+/// Runs a program on a thread with that much stack.
+pub(crate) fn on_deep_stack(program: impl FnOnce() -> ExitCode + Send + 'static) -> ExitCode {
+    let thread = std::thread::Builder::new().name("main".into()).stack_size(STACK).spawn(program);
+    match thread.map(std::thread::JoinHandle::join) {
+        Ok(Ok(status)) => status,
+        // The thread has said why it panicked.
+        Ok(Err(_)) => ExitCode::from(3),
+        Err(e) => {
+            eprintln!("system - cannot start a thread: {e}");
+            ExitCode::from(2)
+        }
+    }
+}
+
 impl Session {
     /// A session that knows nothing but its name.
     pub(crate) fn new(program: String, reports: bool) -> Self {
@@ -218,6 +236,7 @@ impl Session {
         }
         // The main thread is one of them: a step that runs alone costs no change of threads.
         rayon::ThreadPoolBuilder::new()
+            .stack_size(STACK)
             .num_threads(common.threads())
             .use_current_thread()
             .build_global()

@@ -163,6 +163,94 @@ fn interrupted_pictures_are_completed() {
 }
 
 #[test]
+fn sizes_and_pixels_of_odd_pictures() {
+    let bench = Bench::new();
+    let start = |line: &str| {
+        let picture = bench.rpict(&format!("{line} scene.oct"), b"").stdout;
+        let end = picture.windows(3).position(|w| w == b"+X ").unwrap() + 11;
+        String::from_utf8(picture[..end].to_vec()).unwrap()
+    };
+    // Nothing in one direction is nothing at all.
+    assert!(start("-w -vtl -vh 1000 -x 8 -y 8").ends_with("\n\n-Y        0 +X        0"));
+    let wide = bench.rpict("-w -pa 0 -x 70000 -y 1 scene.oct", b"");
+    let text = "rpict: fatal - a picture of 70000 by 1 pixels (more than 65535 across) is not supported\n";
+    assert_eq!(wide.status.code(), Some(1));
+    assert!(wide.stdout.is_empty() && String::from_utf8_lossy(&wide.stderr).starts_with(text));
+    // What is recovered has the pixels that view and size come to.
+    let whole = bench.rpict("-w -vh 90 -vv 75 -x 20 -y 20 scene.oct", b"").stdout;
+    assert!(!String::from_utf8_lossy(&whole).contains("PIXASPECT"));
+    std::fs::write(bench.path("part.hdr"), &whole[..whole.len() / 2]).unwrap();
+    assert!(start("-w -r part.hdr").contains("\nPIXASPECT=1.023103\n"));
+}
+
+#[test]
+fn trees_have_no_number_of_components() {
+    let bench = Bench::new();
+    for (fields, lines) in [("vs", 1), ("vts", 0), ("vt", 1), ("ot", 1), ("ts", 0), ("Tv", 0)] {
+        let answer = bench.rtrace(&format!("-w -o{fields} scene.oct"), b"");
+        let text = String::from_utf8(answer.stdout).unwrap();
+        assert_eq!(text.matches("\nNCOMP=").count(), lines, "{fields}: {text}");
+    }
+}
+
+#[test]
+fn ambient_files_name_the_program_that_made_them() {
+    let bench = Bench::new();
+    for (answer, file, line) in [
+        (bench.rtrace("-w -af one.amb scene.oct", b""), "one.amb", "#?RADIANCE\nrtrace -av 0 0 0 -aw 0 -ab 0 "),
+        (bench.rpict("-w -x 4 -af two.amb scene.oct", b""), "two.amb", "#?RADIANCE\nrpict -av 0 0 0 -aw 0 -ab 0 "),
+    ] {
+        assert!(answer.status.success());
+        assert!(std::fs::read(bench.path(file)).unwrap().starts_with(line.as_bytes()), "{file}");
+    }
+}
+
+#[test]
+fn rays_that_are_only_cast_need_no_light() {
+    let bench = Bench::new();
+    let warning = "rtrace: warning - no light sources found\n";
+    for (line, text) in [("-h -osL scene.oct", ""), ("-h -osLv scene.oct", warning)] {
+        assert_eq!(String::from_utf8_lossy(&bench.rtrace(line, RAYS).stderr), text, "{line}");
+    }
+}
+
+#[test]
+fn rays_between_mirrors_do_not_overflow_the_stack() {
+    let bench = Bench::new();
+    // Two mirrors face each other; perfect ones never let a ray go.
+    for reflectance in ["0.995", "1"] {
+        let scene = format!(
+            "void metal m 0 0 5 {reflectance} {reflectance} {reflectance} 1 0 \
+             m ring low 0 0 8 0 0 0 0 0 1 0 9 m ring high 0 0 8 0 0 1 0 0 -1 0 9"
+        );
+        std::fs::write(bench.path("mirrors.rad"), scene).unwrap();
+        let octree = bench.run(env!("CARGO_BIN_EXE_oconv"), "mirrors.rad", b"").stdout;
+        std::fs::write(bench.path("mirrors.oct"), octree).unwrap();
+        for threads in [1, 2] {
+            let line = format!("-h -w -lr 0 -n {threads} mirrors.oct");
+            let answer = bench.rtrace(&line, "0 0 .5 .00001 0 1\n".repeat(32).as_bytes());
+            let lines = String::from_utf8_lossy(&answer.stdout).lines().count();
+            assert_eq!((answer.status.code(), lines), (Some(0), 32), "{reflectance} {threads}");
+        }
+    }
+}
+
+#[test]
+fn names_keep_their_bytes() {
+    let bench = Bench::new();
+    // Two names in Latin-1 that differ in one letter, neither of which is UTF-8.
+    let scene = b"void glow gr\xfcn 0 0 4 0 1 0 0 void glow gr\xe4n 0 0 4 1 0 0 0 gr\xfcn sphere s\xf6 0 0 4 0 0 0 1";
+    std::fs::write(bench.path("latin.rad"), scene).unwrap();
+    for option in ["", "-f "] {
+        let octree = bench.run(env!("CARGO_BIN_EXE_oconv"), &format!("{option}latin.rad"), b"").stdout;
+        std::fs::write(bench.path("latin.oct"), octree).unwrap();
+        let answer = bench.rtrace("-h -w -osm~v latin.oct", b"0 0 3 0 0 -1");
+        let line = b"s\xf6\tgr\xfcn\t~\t0.000000e+00\t1.000000e+00\t0.000000e+00\t\n";
+        assert_eq!(answer.stdout, line, "{}", String::from_utf8_lossy(&answer.stdout));
+    }
+}
+
+#[test]
 fn frames_that_exist_are_not_made_again() {
     let bench = Bench::new();
     let views = b"VIEW= -vh 50\nVIEW= -vh 60\nVIEW= -vh 70\n";
@@ -184,7 +272,11 @@ fn errors_have_their_class_and_status() {
     for (line, text, status) in [
         ("-ab1 scene.oct", "rtrace: fatal - command line error at '-ab1'", 1),
         ("", "rtrace: fatal - missing octree argument", 1),
-        ("-oq scene.oct", "rtrace: fatal - unrecognized output option 'q'", 1),
+        (
+            "-oq scene.oct",
+            "rtrace: fatal - unrecognized output option 'q' (expected letters of odrRxXvVlLcpnNswWmM~tT)",
+            1,
+        ),
         ("-fac -op scene.oct", "rtrace: fatal - color format only with -ov, -or, -ox", 1),
         ("-fac -pY scene.oct", "rtrace: fatal - color format incompatible with -pY, -pS, -pM", 1),
         ("-I -op scene.oct", "rtrace: fatal - -I+ and -i+ options require some value output", 1),
@@ -208,6 +300,7 @@ fn errors_have_their_class_and_status() {
     assert_eq!(lines[0], "rpict: fatal - view up parallel to view direction");
     assert!(lines[1].starts_with("rpict: 0 rays, 0.00% after 0.000u 0.000s 0.000r hours on "));
     for (line, text) in [
+        ("-vtz scene.oct", "rpict: fatal - unknown view type 'z' (expected one of: v, l, c, h, a, s)"),
         ("-PP file scene.oct", "rpict: fatal - persist option only for sequences"),
         ("-S 1 -r old.hdr -P file scene.oct", "rpict: fatal - persist option used with recover file"),
     ] {
@@ -261,4 +354,13 @@ fn man_pages_and_help_are_there() {
     }
     assert!(String::from_utf8_lossy(&bench.rtrace("--help", b"").stdout).contains("Usage: rtrace "));
     assert!(bench.rtrace("-version", b"").stdout.starts_with(b"RADIANCE "));
+    for (name, program) in [
+        ("oconv", env!("CARGO_BIN_EXE_oconv")),
+        ("obj2mesh", env!("CARGO_BIN_EXE_obj2mesh")),
+        ("lookamb", env!("CARGO_BIN_EXE_lookamb")),
+    ] {
+        let answer = bench.run(program, "--help", b"");
+        assert!(answer.status.success() && answer.stderr.is_empty(), "{name}");
+        assert!(String::from_utf8_lossy(&answer.stdout).starts_with(&format!("Usage: {name} ")), "{name}");
+    }
 }

@@ -200,5 +200,7 @@ fn files_without_fingerprint_are_used_and_off_leaves_them_alone() {
         assert_eq!(fs::read(bench.path("a.amb")).unwrap(), now);
     }
     let wrong = bench.rtrace("--reuse perhaps", "s");
-    assert_eq!(errors(&wrong), "rtrace: fatal - command line error at '--reuse'\n");
+    let text = "rtrace: fatal - command line error at '--reuse': 'perhaps' (expected one of: auto, strict, append, \
+                read-only, off)\n";
+    assert_eq!(errors(&wrong), text);
 }

@@ -70,6 +70,10 @@ fn a_run_says_what_it_took() {
     let picture =
         |more: &str| run(&folder, env!("CARGO_BIN_EXE_rpict"), &format!("{LIGHT} -x 16 -y 16 {more} s.oct"), "");
     assert_eq!(said(&picture("")).len(), 0);
-    assert_eq!(said(&picture("-t 1000")).len(), 5);
+    let reported = picture("-t 1000");
+    assert_eq!(said(&reported).len(), 5);
+    // The last line says that the picture is done, as scripts expect.
+    let text = String::from_utf8(reported.stderr).unwrap();
+    assert!(text.lines().last().unwrap().contains(" rays, 100.00% after "), "{text}");
     assert_eq!(said(&picture("-t 1000 -ab 0")).len(), 0);
 }

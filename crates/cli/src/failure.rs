@@ -70,6 +70,12 @@ impl Failure {
         Self::user(format!("command line error at '{word}'"))
     }
 
+    /// A word that is none of those that an option knows.
+    pub fn choice(option: &str, word: &str, known: &[&str]) -> Self {
+        let known = known.join(", ");
+        Self::user(format!("command line error at '{option}': '{word}' (expected one of: {known})"))
+    }
+
     /// An option that is understood but can not be served yet.
     pub fn unsupported(what: &str) -> Self {
         Self::user(format!("{what} not supported"))
@@ -96,6 +102,11 @@ mod tests {
         for (failure, text, status) in [
             (Failure::at("-q"), "fatal - command line error at '-q'", 1),
             (Failure::system("write error", &gone), "system - write error: No such file or directory", 2),
+            (
+                Failure::choice("--how", "maybe", &["on", "off"]),
+                "fatal - command line error at '--how': 'maybe' (expected one of: on, off)",
+                1,
+            ),
             (Failure::internal("lost"), "internal - lost", 3),
         ] {
             assert_eq!(failure.to_string(), text);

@@ -366,7 +366,10 @@ fn file_rows<S: Carries<Rendering> + Carries<Common>>() -> Vec<Row<S>> {
                     "append" => Some(Reuse::Append),
                     "read-only" => Some(Reuse::ReadOnly),
                     "off" => None,
-                    _ => return Err(Failure::at("--reuse")),
+                    other => {
+                        let known = ["auto", "strict", "append", "read-only", "off"];
+                        return Err(Failure::choice("--reuse", other, &known));
+                    }
                 };
                 Ok(())
             },

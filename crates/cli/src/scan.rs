@@ -105,11 +105,12 @@ impl Arguments<'_> {
     }
 
     fn real(&mut self, option: &str) -> Result<f64, Failure> {
-        real(&self.text(option)?).ok_or_else(|| Failure::at(option))
+        // Scripts that put their words together leave blanks around numbers, which Radiance passes over.
+        real(self.text(option)?.trim()).ok_or_else(|| Failure::at(option))
     }
 
     fn integer(&mut self, option: &str) -> Result<i32, Failure> {
-        integer(&self.text(option)?).ok_or_else(|| Failure::at(option))
+        integer(self.text(option)?.trim()).ok_or_else(|| Failure::at(option))
     }
 
     /// Reads one option with its values.

@@ -118,7 +118,11 @@ impl OutputSpec {
             match LETTERS.iter().find(|row| row.0 == c) {
                 Some(row) => tree.as_mut().unwrap_or(&mut fields).push(row.1),
                 None if c == 't' || c == 'T' => tree = Some(Vec::new()),
-                None => return Err(Failure::user(format!("unrecognized output option '{c}'"))),
+                None => {
+                    let known: String = LETTERS.iter().map(|row| row.0).chain(['t', 'T']).collect();
+                    let text = format!("unrecognized output option '{c}' (expected letters of {known})");
+                    return Err(Failure::user(text));
+                }
             }
         }
         let tree = tree.map(|fields| TreeSpec { fields, shadows: letters.contains('T') });
@@ -180,7 +184,10 @@ mod tests {
         assert!(!OutputSpec::parse("odLcpNsmMw~").unwrap().shades());
         let plain = OutputSpec::parse("vt").unwrap();
         assert_eq!((&plain.fields[..], plain.tree), (&[Field::Value][..], None));
-        for (letters, text) in [("", "empty output specification"), ("vq", "unrecognized output option 'q'")] {
+        for (letters, text) in [
+            ("", "empty output specification"),
+            ("vq", "unrecognized output option 'q' (expected letters of odrRxXvVlLcpnNswWmM~tT)"),
+        ] {
             assert_eq!(OutputSpec::parse(letters).unwrap_err().text, text);
         }
     }

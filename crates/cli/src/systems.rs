@@ -51,7 +51,7 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
                     "auto" => None,
                     "on" => Some(true),
                     "off" => Some(false),
-                    _ => return Err(Failure::at("--measured-reuse")),
+                    other => return Err(Failure::choice("--measured-reuse", other, &["auto", "on", "off"])),
                 };
                 Ok(())
             }),
@@ -64,7 +64,8 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
             Place::Reals(1, |s: &mut S, weight| {
                 let weight = weight[0] as f32;
                 if !(0.0..=MOST_OVERLAP).contains(&weight) {
-                    return Err(Failure::at("--overlap"));
+                    let text = format!("command line error at '--overlap': {weight} (expected 0 to {MOST_OVERLAP})");
+                    return Err(Failure::user(text));
                 }
                 light(s).options.ambient.overlap = weight;
                 Ok(())
@@ -79,7 +80,7 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
                 light(s).options.ambient.systems.spacing = match how.as_str() {
                     "hessian" => Spacing::Hessian,
                     "classical" => Spacing::Classical,
-                    _ => return Err(Failure::at("--spacing")),
+                    other => return Err(Failure::choice("--spacing", other, &["hessian", "classical"])),
                 };
                 Ok(())
             }),

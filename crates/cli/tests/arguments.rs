@@ -245,3 +245,40 @@ fn help_and_man_page_show_options_as_they_are_written() {
     }
     assert!(ambit_cli::completions(&about, &picture_table(), "tcsh").is_none());
 }
+
+#[test]
+fn blanks_around_numbers_do_not_matter() {
+    let mut options = RayOptions::new(2);
+    let line = ["-ab", " 2", "-aa", ".5 ", "-av", " 1", "2 ", " 3 "].map(String::from);
+    scan(line, &ray_table(), &mut options, &World).unwrap();
+    let ambient = options.rendering.options.ambient.clone();
+    assert_eq!((ambient.bounces, ambient.accuracy, ambient.value.to_array()), (2, 0.5, [1.0, 2.0, 3.0]));
+    let inside = ["-aa", "1 2"].map(String::from);
+    assert_eq!(scan(inside, &ray_table(), &mut options, &World).unwrap_err(), Failure::at("-aa"));
+}
+
+#[test]
+fn options_with_a_choice_say_which() {
+    let about = ambit_cli::About { name: "rtrace", summary: "", synopsis: "", notes: "" };
+    let help = ambit_cli::long_help(&about, &ray_table());
+    for (option, choice) in [
+        ("--reuse", &["auto", "strict", "append", "read-only", "off"][..]),
+        ("--measured-reuse", &["auto", "on", "off"]),
+        ("--spacing", &["hessian", "classical"]),
+        ("--overlap", &["0", "0.9"]),
+    ] {
+        for failure in [rtrace(&format!("{option} 7")).1.unwrap_err(), rpict(&format!("{option} 7")).1.unwrap_err()] {
+            let start = format!("command line error at '{option}': ");
+            assert!(failure.text.starts_with(&start), "{}", failure.text);
+            for word in choice {
+                assert!(failure.text.contains(word), "{word} is not in: {}", failure.text);
+            }
+        }
+        let described = help.split(option).nth(1).expect("the option is in the help");
+        let described = described.split("\n      --").next().unwrap_or_default();
+        for word in choice {
+            assert!(described.contains(word), "{word} is not in the help of {option}: {described}");
+            assert!(option == "--overlap" || rtrace(&format!("{option} {word} o")).1.is_ok(), "{option} {word}");
+        }
+    }
+}

@@ -122,7 +122,7 @@ fn errors_come_in_the_order_of_the_programs() {
         ("-vts -vh 360", Some(Horizontal)),
         ("-vts -vv 359", None),
         ("-vtq -vh 0", Some(Horizontal)),
-        ("-vtq -vh 400", Some(Type)),
+        ("-vtq -vh 400", Some(Type('q'))),
         ("-vtl -vh 400", None),
         ("-vtl -vv -3", Some(Vertical)),
     ] {

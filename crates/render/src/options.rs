@@ -5,6 +5,7 @@ use ambit_ambient::{OVERLAP, Systems};
 use ambit_base::Rgb;
 
 /// Parameters shared by all programs that trace light.
+#[expect(clippy::struct_excessive_bools, reason = "each is an option by itself")]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// `-d*`: the direct calculation.
@@ -27,6 +28,8 @@ pub struct Options {
     pub uncorrelated: bool,
     /// Changes every random stream; equal seeds give equal bits.
     pub seed: u64,
+    /// Rays only look for surfaces ([`crate::Aim::Geometry`]): that nothing lights the scene is no matter.
+    pub casting: bool,
 }
 
 /// Direct light.
@@ -155,6 +158,7 @@ impl Options {
             irradiance: false,
             uncorrelated: false,
             seed: 0,
+            casting: false,
         }
     }
 

@@ -6,7 +6,7 @@
 
 use crate::options::Limits;
 use crate::sources::SourceId;
-use ambit_base::{DVec3, FAR, Rgb, Stream};
+use ambit_base::{DVec3, EPSILON, FAR, Rgb, Stream};
 use ambit_scene::{ObjectId, VOID};
 use ambit_trace::Hit;
 
@@ -94,6 +94,10 @@ pub(crate) fn transmittance(extinction: Rgb, distance: f64) -> Rgb {
     Rgb::new(one(extinction.x), one(extinction.y), one(extinction.z))
 }
 
+/// Reflections after which a ray ends whatever `-lr` says. A ray waits on the stack for those that follow from it, some 4 kB
+/// each, and between perfect mirrors there is no end; mirrors that keep .999 have lost all but e^-10 by then.
+const MOST_REFLECTIONS: i32 = 10_000;
+
 /// A ray, and after evaluation what it met and what it is worth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ray<'p> {
@@ -101,7 +105,7 @@ pub(crate) struct Ray<'p> {
     pub(crate) origin: DVec3,
     /// Unit length.
     pub(crate) direction: DVec3,
-    /// Hits at this distance or beyond are out of reach; [`FAR`] for none.
+    /// Surfaces at this distance or beyond are out of sight ([`Ray::query`]); [`FAR`] for none.
     pub(crate) limit: f64,
     pub(crate) kind: Kinds,
     /// Union of the kinds of this ray and all its ancestors.
@@ -144,6 +148,13 @@ pub(crate) struct Ray<'p> {
 pub(crate) type ClipSet = u32;
 
 impl<'p> Ray<'p> {
+    /// What is asked of the world. A surface right at the limit is out of sight whichever way its distance is rounded,
+    /// or planes that cut a scene along a wall would show it in speckles.
+    pub(crate) fn query(&self) -> ambit_trace::Ray {
+        let limit = if self.limit < FAR { self.limit - EPSILON } else { self.limit };
+        ambit_trace::Ray { origin: self.origin, direction: self.direction, limit }
+    }
+
     /// A ray without ancestors.
     pub(crate) fn primary(origin: DVec3, direction: DVec3, limit: f64, interior: Interior, stream: Stream) -> Self {
         Self {
@@ -199,7 +210,7 @@ impl<'p> Ray<'p> {
             coefficient: k,
             throughput: self.throughput * k,
             target: if kind.meets(Kinds::AIMED) { self.target } else { None },
-            limit: if !kind.meets(Kinds::RAISING) && self.limit < FAR && self.limit > ambit_base::EPSILON {
+            limit: if !kind.meets(Kinds::RAISING) && self.limit < FAR && self.limit > EPSILON {
                 self.limit - self.distance
             } else {
                 FAR
@@ -237,6 +248,9 @@ impl<'p> Ray<'p> {
         }
         if self.lineage.meets(Kinds::SHADOW) {
             return Fate::Alive;
+        }
+        if self.level > MOST_REFLECTIONS {
+            return Fate::Refused;
         }
         let least = limits.weight as f32;
         if limits.reflections <= 0 && has_coefficient {

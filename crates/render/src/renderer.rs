@@ -19,7 +19,6 @@ use crate::{Error, Options};
 use ambit_ambient::{Cache, Miss, Params, Systems};
 use ambit_base::{DVec3, FAR, Notify, Rgb, Stream, hash_bits};
 use ambit_scene::{ObjectId, VOID};
-use std::borrow::Cow;
 use std::sync::{Mutex, PoisonError};
 
 /// Most requests that are shaded against one state of the cache.
@@ -196,9 +195,9 @@ impl Renderer {
         outlines(&self.scene.sources)
     }
 
-    /// Identifier of an object; `*` for [`VOID`] as a surface is the caller's affair.
-    pub fn name(&self, id: ObjectId) -> Cow<'_, str> {
-        if id == VOID { Cow::Borrowed("void") } else { self.scene.objects.name(id) }
+    /// Identifier of an object, in whatever encoding the scene has; `*` for [`VOID`] as a surface is the caller's affair.
+    pub fn name(&self, id: ObjectId) -> &[u8] {
+        if id == VOID { b"void" } else { self.scene.objects.name_bytes(id) }
     }
 }
 
@@ -305,9 +304,10 @@ impl<O: Observer> Walk<'_, O> {
     /// Finds the nearest surface and shades nothing.
     fn locate(&mut self, ray: &mut Ray<'_>) {
         self.work.rays += 1;
-        let query = ambit_trace::Ray { origin: ray.origin, direction: ray.direction, limit: ray.limit };
-        let Some(hit) = self.tracer.scene.world.nearest(&query) else {
-            if ray.limit >= FAR {
+        let Some(hit) = self.tracer.scene.world.nearest(&ray.query()) else {
+            if ray.limit < FAR {
+                ray.point = ray.origin + ray.direction * ray.limit;
+            } else {
                 self.meet_distant(ray);
             }
             return;

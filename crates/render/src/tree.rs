@@ -17,15 +17,14 @@ use crate::work::Work;
 use ambit_ambient::{Cache, Miss, Query, Sample, SampleRay, Sampler};
 use ambit_base::{DVec3, Notify, Rgb, hash_bits, hash_point};
 use ambit_scene::ObjectId;
-use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// How often a ray's questions are resolved before it is shown. Once nearly always does.
 const MOST_ROUNDS: usize = 8;
 
-/// The names of objects.
-pub type Names<'n> = &'n dyn Fn(ObjectId) -> Cow<'n, str>;
+/// The names of objects, as the bytes that the scene has.
+pub type Names<'n> = &'n dyn Fn(ObjectId) -> &'n [u8];
 
 /// What is shown a ray, its bins and what finds names.
 pub type Visit<'v> = &'v mut dyn FnMut(&TreeRay, Option<Bins<'_>>, Names<'_>);

@@ -28,8 +28,7 @@ impl<O: Observer> Walk<'_, O> {
     /// Traces a ray and shades what it meets.
     pub(crate) fn evaluate(&mut self, ray: &mut Ray<'_>) {
         self.work.rays += 1;
-        let query = ambit_trace::Ray { origin: ray.origin, direction: ray.direction, limit: ray.limit };
-        match self.tracer.scene.world.nearest(&query) {
+        match self.tracer.scene.world.nearest(&ray.query()) {
             Some(hit) => self.shade_hit(ray, hit),
             None if ray.limit < FAR => {
                 ray.point = ray.origin + ray.direction * ray.limit;

@@ -11,6 +11,22 @@ use std::io::{self, BufWriter, Read, Write};
 use std::os::unix::ffi::OsStrExt;
 use std::process::ExitCode;
 
+const HELP: &str = "\
+Usage: lookamb [-d] [-h] [-r] [FILE]
+
+Prints the irradiance records of an ambient file as text, or turns such text back
+into an ambient file. Without FILE: standard input.
+
+  -d         a line of numbers for each record: position, normal, first axis, level,
+             weight, two radii, red, green and blue, gradients of position and of
+             direction, directions left out (corral); without it, labelled lines
+  -h         no header
+  -r         the reverse: text (labelled, or with -d lines of numbers; with -h without
+             a header) becomes an ambient file
+  --help     print this text
+  --version  print the version
+";
+
 /// What the arguments ask for.
 #[derive(Clone, Copy, Debug)]
 struct Options {
@@ -59,6 +75,8 @@ fn run(words: &[OsString]) -> Result<(), Failure> {
     let mut file = None;
     for word in words_left.by_ref() {
         match word.as_bytes() {
+            b"--help" => return print(HELP),
+            b"--version" => return print(&format!("{}\n", ambit_cli::VERSION)),
             [b'-', b'd', ..] => options.form = TextForm::Tabular,
             [b'-', b'h', ..] => options.header = false,
             [b'-', b'r', ..] => options.reverse = true,
@@ -87,6 +105,10 @@ fn run(words: &[OsString]) -> Result<(), Failure> {
         to_text(&bytes, &name, options, &mut out)?;
     }
     out.flush().map_err(Failure::Output)
+}
+
+fn print(text: &str) -> Result<(), Failure> {
+    io::stdout().write_all(text.as_bytes()).map_err(Failure::Output)
 }
 
 /// The lines of a header that text and binary share.

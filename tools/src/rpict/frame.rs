@@ -13,6 +13,9 @@ use ambit_file::{PixelSpace, Projection, View, fit_resolution};
 use ambit_render::picture::{Band, Camera, Lens, Order, Pixel, PixelRequest, Sampler, SmallSources};
 use ambit_render::{Answer, Request};
 
+/// Most pixels across: samples are numbered along a Hilbert curve by 32 bits.
+const MOST_ACROSS: u32 = 65535;
+
 /// What is common to all pictures of a run.
 pub(crate) struct Picture<'a> {
     pub(crate) session: &'a Session,
@@ -50,7 +53,7 @@ pub(crate) fn set_up(view: &View) -> Result<Projection, Failure> {
 impl Frame {
     /// A frame of this view, to standard output.
     pub(crate) fn new(view: Projection, options: &PictureOptions) -> Self {
-        let size = |v: i32| v.clamp(0, u16::MAX.into()) as u32;
+        let size = |v: i32| v.max(0) as u32;
         let fit = fit_resolution(view.aspect(), options.pixel_aspect, size(options.width), size(options.height));
         Self {
             number: None,
@@ -87,7 +90,8 @@ impl Frame {
     pub(crate) fn take_over(&mut self, recovered: Option<Recovered>) {
         if let Some(r) = &recovered {
             (self.width, self.height) = r.size;
-            self.pixel_aspect = r.pixel_aspect;
+            // What the view and the size come to, whatever was asked for then.
+            self.pixel_aspect = fit_resolution(self.view.aspect(), 0.0, self.width, self.height).pixel_aspect;
         }
         self.recovered = recovered;
     }
@@ -99,19 +103,25 @@ impl Picture<'_> {
         let options = self.options;
         self.session.meter.set_percent(0.0);
         let (width, height) = (frame.width, frame.height);
+        if width.max(height) > MOST_ACROSS {
+            let what = format!("a picture of {width} by {height} pixels (more than {MOST_ACROSS} across) is");
+            return Err(Failure::unsupported(&what).into());
+        }
         let done = frame.recovered.as_ref().map_or(0, |r| r.lines.len() as u32);
         let mut output = PictureOutput::open(frame.output.as_deref(), frame.distances.as_deref(), done, width)?;
         let mut head = Vec::new();
         // Writing to memory does not fail.
         let _ = self.header(frame, &scene.header, frame.first).write(&mut head);
-        head.extend_from_slice(resolution_line(width, height).as_bytes());
+        let empty = width == 0 || height == 0;
+        let (columns, rows) = if empty { (0, 0) } else { (width, height) };
+        head.extend_from_slice(resolution_line(columns, rows).as_bytes());
         output.head(&head)?;
         if let Some(r) = &frame.recovered {
             output.codes(&r.lines)?;
             std::fs::remove_file(&r.file)
                 .map_err(|e| Failure::system(format!("cannot remove \"{}\"", r.file.display()), &e))?;
         }
-        if width == 0 || height == 0 {
+        if empty {
             self.session.messages.warn("empty output picture");
             return Ok(());
         }
@@ -122,6 +132,10 @@ impl Picture<'_> {
         let lines = |left: u32| 100.0 * f64::from(height - left) / f64::from(height);
         let mut watch = Watch::start(self.session, options.report, lines(height - done));
         self.compute(frame, height - done, scene, &mut output, &mut watch)?;
+        if options.report > 0 && frame.number.is_none() {
+            // What reads the last line to see if a picture is done shall find the last report there.
+            scene.tell();
+        }
         watch.finish();
         Ok(())
     }

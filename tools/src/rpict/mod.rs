@@ -10,7 +10,7 @@ mod watch;
 
 use crate::colour::Conversion;
 use crate::light::Scene;
-use crate::session::{Session, Stop, Tool, split};
+use crate::session::{Session, Stop, Tool, on_deep_stack, split};
 use ambit_base::Notify;
 use ambit_cli::{About, COMMON_FEATURES, Failure, Features, Output, PICTURE_FEATURES, PictureOptions, picture_table};
 use ambit_file::PixelSpace;
@@ -33,6 +33,10 @@ const GREATEST_SPACING: i32 = 16;
 /// Runs the program.
 pub fn main(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let (program, words) = split(arguments);
+    on_deep_stack(move || work(program, words))
+}
+
+fn work(program: String, words: Vec<String>) -> ExitCode {
     let mut session = Session::new(program, true);
     let result = run(&mut session, words);
     // Radiance reports after every message, and has none where it ends without a word.

@@ -16,8 +16,6 @@ pub(crate) struct Recovered {
     pub(crate) view: View,
     /// Width and height.
     pub(crate) size: (u32, u32),
-    /// Height over width of its pixels.
-    pub(crate) pixel_aspect: f64,
     /// Scanlines that are whole, from the top.
     pub(crate) lines: Vec<Vec<[u8; 4]>>,
 }
@@ -77,11 +75,10 @@ pub(crate) fn read(session: &Session, file: PathBuf, space: PixelSpace) -> Optio
         return None;
     };
     let size = (reader.resolution.width, reader.resolution.height);
-    let pixel_aspect = reader.header.pixel_aspect();
     let mut lines = Vec::new();
     // A line that was cut off is no line.
     while let Ok(Some(line)) = reader.next_codes() {
         lines.push(line.to_vec());
     }
-    Some(Recovered { file, view, size, pixel_aspect, lines })
+    Some(Recovered { file, view, size, lines })
 }

@@ -22,8 +22,8 @@ pub(crate) fn write(
     header.extend(session.command_lines());
     header.extend(Session::time_lines());
     let components = spec.components(channels);
-    // A tree has records of no fixed size; with nothing after the letter it is none, but has no line either.
-    if components > 0 && !options.fields.ends_with(['t', 'T']) {
+    // A tree has records of no fixed size. With nothing after the letter it is none.
+    if components > 0 && spec.tree.is_none() {
         header.push(format!("NCOMP={components}"));
     }
     let spectrum = &options.rendering.options.spectrum;

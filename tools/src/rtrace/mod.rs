@@ -8,7 +8,7 @@ mod stream;
 mod tree;
 
 use crate::light::Scene;
-use crate::session::{Session, Stop, Tool, split};
+use crate::session::{Session, Stop, Tool, on_deep_stack, split};
 use crate::spectral::Converter;
 use ambit_base::Notify;
 use ambit_cli::{
@@ -33,6 +33,10 @@ const ABOUT: About = About {
 /// Runs the program.
 pub fn main(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let (program, words) = split(arguments);
+    on_deep_stack(move || work(program, words))
+}
+
+fn work(program: String, words: Vec<String>) -> ExitCode {
     let mut session = Session::new(program, false);
     let result = run(&mut session, words);
     session.end(result)

@@ -43,7 +43,7 @@ impl<'a> RecordWriter<'a> {
             if answer.surface == VOID {
                 out.push(b'*');
             } else {
-                out.extend_from_slice(names(id).as_bytes());
+                out.extend_from_slice(names(id));
             }
             out.push(b'\t');
         };

@@ -161,7 +161,6 @@ mod tests {
     use ambit_cli::{InputFormat, Output, OutputFormat};
     use ambit_render::Visit;
     use ambit_scene::ObjectId;
-    use std::borrow::Cow;
     use std::cell::RefCell;
     use std::rc::Rc;
 
@@ -185,8 +184,8 @@ mod tests {
             unreachable!("these tests ask for no trees")
         }
 
-        fn name(&self, _: ObjectId) -> Cow<'_, str> {
-            "it".into()
+        fn name(&self, _: ObjectId) -> &[u8] {
+            b"it"
         }
     }
 

@@ -31,7 +31,8 @@ impl<'a> TreeWriter<'a> {
     /// True if what the ray hits has one of the wanted modifiers.
     fn selects(&self, ray: &TreeRay, names: Names<'_>) -> bool {
         let listed = |list: &[String]| {
-            ray.answer.surface != ambit_scene::VOID && list.iter().any(|name| *name == names(ray.answer.modifier))
+            ray.answer.surface != ambit_scene::VOID
+                && list.iter().any(|name| name.as_bytes() == names(ray.answer.modifier))
         };
         match self.selection {
             Selection::All => true,

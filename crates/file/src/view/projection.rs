@@ -28,8 +28,8 @@ pub enum ViewError {
     #[error("illegal vertical view size")]
     Vertical,
     /// A letter that is no type.
-    #[error("unknown view type")]
-    Type,
+    #[error("unknown view type '{0}' (expected one of: v, l, c, h, a, s)")]
+    Type(char),
 }
 
 /// The ray of an image location.
@@ -138,7 +138,7 @@ fn extents(kind: ViewType, h: f64, v: f64) -> Result<(f64, f64), ViewError> {
             let stereographic = |a: f64| sine(a) / (1.0 + (a / 2.0).to_radians().cos());
             Ok((stereographic(h), stereographic(v)))
         }
-        ViewType::Unknown(_) => Err(ViewError::Type),
+        ViewType::Unknown(letter) => Err(ViewError::Type(letter)),
     }
 }
 

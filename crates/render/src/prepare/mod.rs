@@ -56,6 +56,7 @@ impl Prepared {
             top_level.clone(),
             &modifiers,
             options.ambient.bounces > 0,
+            options.casting,
             environment,
         )?;
         let world = world::build(&scene, top_level.clone(), &volumes, &modifiers, environment)?;

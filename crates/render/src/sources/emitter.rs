@@ -132,13 +132,12 @@ impl Source {
                     emitter: Emitter::Cylinder(c),
                 })
             }
-            Shape::Source(s) => Ok(Geometry::square(
-                Emitter::Distant,
-                s.direction,
-                s.direction,
-                s.solid_angle,
-                (s.solid_angle / PI).sqrt(),
-            )),
+            Shape::Source(s) => {
+                // Radiance keeps solid angles in 32 bits, and that decides about rays along the rim: a horizontal ray
+                // meets a sky of 180 degrees only because 2 pi is rounded up.
+                let size = f64::from(s.solid_angle as f32);
+                Ok(Geometry::square(Emitter::Distant, s.direction, s.direction, size, (size / PI).sqrt()))
+            }
             Shape::Degenerate => Err("illegal source"),
             _ => Err("illegal material"),
         }

@@ -8,12 +8,13 @@ use ambit_base::{EPSILON, FAR};
 use ambit_scene::{Class, Kind, ObjectId, Scene, Shape};
 
 /// The sources among the objects `top_level`, in scene order. `indirect` tells whether light is followed from surface
-/// to surface; without it and without sources a warning says that all will be dark.
+/// to surface; without it and without sources a warning says that all will be dark, unless darkness is `fine`.
 pub(crate) fn find_sources(
     scene: &Scene,
     top_level: std::ops::Range<ObjectId>,
     modifiers: &Modifiers,
     indirect: bool,
+    fine: bool,
     environment: &Environment<'_>,
 ) -> Result<Vec<Source>, Error> {
     let mut found = Vec::new();
@@ -32,7 +33,7 @@ pub(crate) fn find_sources(
             lit |= indirect && node.kind == Kind::Glow && node.emission.max_element() > EPSILON as f32;
         }
     }
-    if !lit {
+    if !lit && !fine {
         environment.notify.warn("no light sources found");
     }
     Ok(found)
