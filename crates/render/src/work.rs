@@ -1,6 +1,6 @@
 //! Scratch memory and counters of one thread: nothing on the ray path allocates once these have grown.
 
-use crate::sources::{Candidate, Count, Part, SourceId, Tally};
+use crate::sources::{Candidate, Chosen, Count, Part, SourceId, Tally};
 
 /// What one thread reuses from ray to ray.
 #[derive(Debug)]
@@ -9,6 +9,8 @@ pub(crate) struct Work {
     pub(crate) rays: u64,
     pub(crate) candidates: Vec<Candidate>,
     pub(crate) parts: Vec<Part>,
+    /// Lamps that stand for all.
+    pub(crate) chosen: Vec<Chosen>,
     /// Candidates as they are ranked.
     pub(crate) ranks: Vec<u64>,
     pub(crate) cal: ambit_cal::Scratch,
@@ -24,6 +26,7 @@ impl Work {
             rays: 0,
             candidates: Vec::new(),
             parts: Vec::new(),
+            chosen: Vec::new(),
             ranks: Vec::new(),
             cal: ambit_cal::Scratch::default(),
             tally: Tally::zero(sources),
