@@ -61,7 +61,7 @@ impl Prepared {
             environment,
         )?;
         let world = world::build(&scene, top_level.clone(), &volumes, &modifiers, environment)?;
-        let obstacles = Obstacles::find(&sources, &world, &modifiers);
+        let obstacles = Obstacles::new(&sources, &world);
         let left_out = left_out(&scene, &options.ambient.selection);
         scene.shrink_to_fit();
         let complaints = Complaints::new(scene.len());
