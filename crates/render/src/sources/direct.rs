@@ -272,7 +272,7 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
-    pub(super) fn test_shadow(&mut self, ray: &mut Ray<'_>, candidate: &Candidate) {
+    fn test_shadow(&mut self, ray: &mut Ray<'_>, candidate: &Candidate) {
         let arrived = self.shadow(ray, candidate);
         self.work.tally.counts[candidate.source as usize].note(arrived.is_some());
         if let Some(light) = arrived {

@@ -65,7 +65,7 @@ impl<O: Observer> Walk<'_, O> {
         scene.lamps.iter().enumerate().filter_map(brought).collect()
     }
 
-    /// Shadow tests of a few candidates that stand for all.
+    /// Shadow tests of a few candidates that stand for all. They leave no record: that is for what is seen directly.
     pub(super) fn test_few(&mut self, ray: &mut Ray<'_>, candidates: &[Candidate]) {
         let mut ranks = std::mem::take(&mut self.work.ranks);
         ranks.clear();
@@ -73,7 +73,8 @@ impl<O: Observer> Walk<'_, O> {
         ranks.sort_unstable();
         let Share { certain, scale } = Share::of(ranks.iter().map(|&r| brightness(r)), TESTED);
         for &r in &ranks[..certain] {
-            self.test_shadow(ray, &candidates[index(r)]);
+            let arrived = self.shadow(ray, &candidates[index(r)]);
+            ray.value += arrived.unwrap_or(Rgb::ZERO);
         }
         let (mut upto, mut at) = (0.0f32, ray.stream.child(SHADOWS).one() as f32);
         for &r in &ranks[certain..] {
@@ -81,7 +82,8 @@ impl<O: Observer> Walk<'_, O> {
             upto += probability;
             if upto > at {
                 at += 1.0;
-                self.test_shadow(ray, &candidates[index(r)].times(probability.recip()));
+                let arrived = self.shadow(ray, &candidates[index(r)].times(probability.recip()));
+                ray.value += arrived.unwrap_or(Rgb::ZERO);
             }
         }
         self.work.ranks = ranks;
