@@ -143,6 +143,7 @@ impl<O: Observer> Walk<'_, O> {
     ) {
         let scene = self.tracer.scene;
         if known && scene.obstacles.block(lamp.source, scene, ray, sample) {
+            self.work.tally.counts[lamp.source as usize].note(false);
             return;
         }
         let emitted = if lamp.uniform && ray.interior.extinction == Rgb::ZERO {
@@ -183,6 +184,7 @@ impl<O: Observer> Walk<'_, O> {
                 continue;
             }
             if known && whole && scene.obstacles.block(id, scene, ray, &sample) {
+                self.work.tally.counts[id as usize].note(false);
                 continue;
             }
             let emitted = self.emitted(ray, id, sample, bend);
