@@ -78,3 +78,12 @@ fn few_lamps_stand_for_all() {
     assert!(error > 0.0 && error < 4e-3, "{error}");
     assert!(bias.abs() < 4.0 * error, "{bias} ± {error}");
 }
+
+#[test]
+fn the_choice_does_not_depend_on_threads() {
+    let points: String = (0..60)
+        .map(|i| format!("{} {} .05 0 0 1\n", f64::from(i % 10) * 2.0 + 0.7, f64::from(i / 10) * 3.0 + 0.4))
+        .collect();
+    let with = |threads| irradiance(&format!("-n {threads} -ab 2 -aa .3 -ad 64 -as 16"), &points);
+    assert_eq!(with(1), with(3));
+}
