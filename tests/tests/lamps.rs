@@ -61,7 +61,7 @@ fn irradiance(options: &str, points: &str) -> Vec<f64> {
 fn few_lamps_stand_for_all() {
     let point = |i: u32| {
         let (x, y) = (f64::from(i % 20) + 0.63, 2.5 * f64::from(i / 20) + 0.41);
-        let up = if i % 3 == 0 { (2.95, -1) } else { (0.05, 1) };
+        let up = if i.is_multiple_of(3) { (2.95, -1) } else { (0.05, 1) };
         format!("{x} {y} {} 0 0 {}\n", up.0, up.1)
     };
     let points: String = (0..160).map(point).collect();
@@ -81,9 +81,8 @@ fn few_lamps_stand_for_all() {
 
 #[test]
 fn the_choice_does_not_depend_on_threads() {
-    let points: String = (0..60)
-        .map(|i| format!("{} {} .05 0 0 1\n", f64::from(i % 10) * 2.0 + 0.7, f64::from(i / 10) * 3.0 + 0.4))
-        .collect();
+    let point = |i: u32| format!("{} {} .05 0 0 1\n", f64::from(i % 10) * 2.0 + 0.7, f64::from(i / 10) * 3.0 + 0.4);
+    let points: String = (0..60).map(point).collect();
     let with = |threads| irradiance(&format!("-n {threads} -ab 2 -aa .3 -ad 64 -as 16"), &points);
     assert_eq!(with(1), with(3));
 }
