@@ -1,6 +1,6 @@
 //! Scratch memory and counters of one thread: nothing on the ray path allocates once these have grown.
 
-use crate::sources::{Candidate, Count, Part, SourceId, Tally};
+use crate::sources::{Candidate, Chosen, Count, Part, SourceId, Tally};
 use ambit_base::Rgb;
 
 /// What one thread reuses from ray to ray.
@@ -12,6 +12,8 @@ pub(crate) struct Work {
     pub(crate) late: [Rgb; 2],
     pub(crate) candidates: Vec<Candidate>,
     pub(crate) parts: Vec<Part>,
+    /// Lamps that stand for all.
+    pub(crate) chosen: Vec<Chosen>,
     /// Candidates as they are ranked.
     pub(crate) ranks: Vec<u64>,
     pub(crate) cal: ambit_cal::Scratch,
@@ -28,6 +30,7 @@ impl Work {
             late: [Rgb::ZERO; 2],
             candidates: Vec::new(),
             parts: Vec::new(),
+            chosen: Vec::new(),
             ranks: Vec::new(),
             cal: ambit_cal::Scratch::default(),
             tally: Tally::zero(sources),

@@ -13,7 +13,7 @@ pub(crate) use material::compile_material;
 pub(crate) use modifiers::{Modifiers, Node};
 
 use crate::patterns::Complaints;
-use crate::sources::{Emitter, Lamp, Obstacles, Relay, Source, SourceId};
+use crate::sources::{Choice, Emitter, Lamp, Obstacles, Relay, Source, SourceId};
 use crate::{Error, Options, Selection};
 use ambit_scene::{Kind, ObjectId, Scene, VOID};
 use ambit_trace::World;
@@ -29,6 +29,8 @@ pub(crate) struct Prepared {
     pub(crate) obstacles: Obstacles,
     /// The sources that are sampled, in scene order.
     pub(crate) lamps: Vec<Lamp>,
+    /// Which of them stand for all where hemisphere samples end.
+    pub(crate) choice: Choice,
     /// Sources at infinity, in scene order.
     pub(crate) distant: Vec<SourceId>,
     /// Mirrors and prisms that relay light.
@@ -60,7 +62,7 @@ impl Prepared {
             environment,
         )?;
         let world = world::build(&scene, top_level.clone(), &volumes, &modifiers, environment)?;
-        let obstacles = Obstacles::find(&sources, &world, &modifiers);
+        let obstacles = Obstacles::new(&sources, &world);
         let left_out = left_out(&scene, &options.ambient.selection);
         scene.shrink_to_fit();
         let complaints = Complaints::new(scene.len());
@@ -72,6 +74,7 @@ impl Prepared {
             distant: distant(&sources),
             sources,
             lamps: Vec::new(),
+            choice: Choice::default(),
             relays: Vec::new(),
             scatterers: Vec::new(),
             top_level,
@@ -84,6 +87,9 @@ impl Prepared {
         crate::sources::add_virtual_sources(&mut prepared, options, environment);
         crate::sources::name_scatterers(&mut prepared, environment);
         prepared.lamps = Lamp::all(&prepared.sources);
+        if options.ambient.bounces > 0 {
+            prepared.choice = Choice::new(&prepared.lamps, &prepared.world.bounds());
+        }
         Ok(prepared)
     }
 

@@ -4,6 +4,7 @@
 
 use crate::observer::Observer;
 use crate::ray::{Kinds, Ray, transmittance};
+use crate::sources::few::TESTED;
 use crate::sources::lamp::{Place, View};
 use crate::sources::partition::{Part, parts};
 use crate::sources::{Emitter, Lamp, Source, SourceId};
@@ -39,19 +40,25 @@ impl Candidate {
         let brightness = potential.brightness();
         (brightness > 0.0).then_some(Self { source, direction, coefficient, potential, brightness })
     }
+
+    /// The same, counted so many times.
+    pub(super) fn times(&self, factor: f32) -> Self {
+        let (coefficient, potential) = (self.coefficient * factor, self.potential * factor);
+        Self { coefficient, potential, brightness: self.brightness * factor, ..*self }
+    }
 }
 
 /// A number that sorts the brightest candidate first, of equals that of the least index.
-fn rank(index: usize, candidate: &Candidate) -> u64 {
+pub(super) fn rank(index: usize, candidate: &Candidate) -> u64 {
     // The bits of positive numbers are in their order.
     u64::from(!candidate.brightness.to_bits()) << 32 | index as u64
 }
 
-fn index(rank: u64) -> usize {
+pub(super) fn index(rank: u64) -> usize {
     rank as u32 as usize
 }
 
-fn brightness(rank: u64) -> f32 {
+pub(super) fn brightness(rank: u64) -> f32 {
     f32::from_bits(!((rank >> 32) as u32))
 }
 
@@ -88,27 +95,54 @@ impl<O: Observer> Walk<'_, O> {
             f64::INFINITY
         };
         let place = Place { point: ray.point, above, ratio, jitter: direct.jitter };
-        for lamp in &scene.lamps {
+        let few = self.asks_few(ray);
+        // Where most lamps are not looked at, a ray is as cheap as to ask for obstacles of those that are.
+        let known = !few || scene.lamps.len() <= TESTED;
+        let chosen = few.then(|| self.choose_lamps(ray, above)).flatten();
+        let count = chosen.as_ref().map_or(scene.lamps.len(), Vec::len);
+        for i in 0..count {
+            let (lamp, factor) = match &chosen {
+                None => (&scene.lamps[i], 1.0),
+                Some(list) => (&scene.lamps[list[i].lamp as usize], list[i].factor),
+            };
             match lamp.view(&scene.sources, &place) {
                 View::Dark => {}
                 View::Whole(sample) => {
-                    let k = coefficient(self, sample.direction, sample.solid_angle);
+                    let k = coefficient(self, sample.direction, sample.solid_angle) * factor;
                     if k.max_element() > 0.0 {
-                        self.consider(ray, lamp, &sample, k, &mut candidates);
+                        self.consider(ray, lamp, &sample, k, known, &mut candidates);
                     }
                 }
-                View::Parts => self.consider_parts(ray, lamp.source, ratio, &mut coefficient, &mut candidates),
+                View::Parts => {
+                    let mut coefficient = |w: &mut Self, l: DVec3, omega: f64| coefficient(w, l, omega) * factor;
+                    self.consider_parts(ray, lamp.source, ratio, known, &mut coefficient, &mut candidates);
+                }
             }
         }
-        self.test_shadows(ray, &candidates);
+        if few && candidates.len() > TESTED {
+            self.test_few(ray, &candidates);
+        } else {
+            self.test_shadows(ray, &candidates);
+        }
         self.work.candidates = candidates;
+        if let Some(list) = chosen {
+            self.work.chosen = list;
+        }
     }
 
-    /// Makes the sample of a whole lamp a candidate, unless an obstacle is known.
+    /// Makes the sample of a whole lamp a candidate, unless an obstacle is `known`.
     #[inline]
-    fn consider(&mut self, ray: &Ray<'_>, lamp: &Lamp, sample: &Sample, k: Rgb, candidates: &mut Vec<Candidate>) {
+    fn consider(
+        &mut self,
+        ray: &Ray<'_>,
+        lamp: &Lamp,
+        sample: &Sample,
+        k: Rgb,
+        known: bool,
+        candidates: &mut Vec<Candidate>,
+    ) {
         let scene = self.tracer.scene;
-        if scene.obstacles.block(lamp.source, scene, ray, sample) {
+        if known && scene.obstacles.block(lamp.source, scene, ray, sample) {
             self.work.tally.counts[lamp.source as usize].note(false);
             return;
         }
@@ -129,6 +163,7 @@ impl<O: Observer> Walk<'_, O> {
         ray: &Ray<'_>,
         id: SourceId,
         ratio: f64,
+        known: bool,
         coefficient: &mut impl FnMut(&mut Self, DVec3, f64) -> Rgb,
         candidates: &mut Vec<Candidate>,
     ) {
@@ -148,7 +183,7 @@ impl<O: Observer> Walk<'_, O> {
             if k.max_element() <= 0.0 {
                 continue;
             }
-            if whole && scene.obstacles.block(id, scene, ray, &sample) {
+            if known && whole && scene.obstacles.block(id, scene, ray, &sample) {
                 self.work.tally.counts[id as usize].note(false);
                 continue;
             }

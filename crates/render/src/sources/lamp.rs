@@ -141,6 +141,11 @@ impl Lamp {
         View::Whole(Sample { direction, distance, solid_angle })
     }
 
+    /// True if it is flat and none of these points, nor what lies between them, can be lit.
+    pub(crate) fn is_behind(&self, points: &[DVec3]) -> bool {
+        self.form == Form::Flat && points.iter().all(|&p| self.normal.dot(self.centre - p) >= 0.0)
+    }
+
     /// True for points inside a spherical lamp or on it, at the distance of its centre: they see it from behind.
     pub(crate) fn encloses(&self, distance: f64) -> bool {
         self.form == Form::Ball && distance <= self.radius + EPSILON

@@ -1,8 +1,10 @@
 //! Light sources: the list, how each is sampled, and the direct calculation with its shadow rays.
 
+mod choice;
 mod direct;
 mod distant;
 mod emitter;
+mod few;
 mod lamp;
 mod list;
 mod obstacles;
@@ -11,6 +13,7 @@ mod scatter;
 mod tally;
 mod virtual_sources;
 
+pub(crate) use choice::{Choice, Chosen};
 pub(crate) use direct::Candidate;
 pub(crate) use distant::sensor;
 pub(crate) use emitter::{Emitter, Source, Spot};

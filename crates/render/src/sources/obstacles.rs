@@ -2,17 +2,17 @@
 //! for every cell across a distant one's beam, the first opaque surface on the way.
 //!
 //! A shadow ray that meets its cell's obstacle needs no search, and the sample is known not to count, which keeps the
-//! estimate for untested sources honest where many sources are blocked. The table is made once and never changes, so
-//! nothing depends on the order of rays.
+//! estimate for untested sources honest where many sources are blocked. A cell is filled when it is asked for first, and
+//! only by what the scene is, so that nothing depends on the order of rays.
 
 use super::SourceId;
 use super::direct::Sample;
 use super::emitter::{Emitter, Source};
-use crate::prepare::{Modifiers, Prepared};
+use crate::prepare::Prepared;
 use ambit_base::{DVec3, EPSILON, FAR, Frame};
 use ambit_scene::{ObjectId, VOID};
 use ambit_trace::{Ray, World};
-use rayon::prelude::*;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Cells along each edge of the cube of directions around a local source.
 const DIRECTIONS: usize = 20;
@@ -23,6 +23,9 @@ const CELL: f64 = 1.5 / DIRECTIONS as f64;
 const POSITIONS: usize = 40;
 /// Sources beyond these have no table.
 const MOST: usize = 200;
+
+/// What no one has looked for yet.
+const UNKNOWN: ObjectId = VOID - 1;
 
 /// Distances that differ by more than this factor need no exact comparison: polygons may be out of plane by a little.
 const SURELY: f64 = 0.99;
@@ -35,7 +38,7 @@ pub(crate) struct Obstacles {
 
 #[derive(Debug, Default)]
 struct Table {
-    cells: Vec<ObjectId>,
+    cells: Vec<AtomicU32>,
     /// The beam of a distant source: axes across it, low corner and width of a cell.
     beam: Option<Beam>,
 }
@@ -48,18 +51,18 @@ struct Beam {
 }
 
 impl Obstacles {
-    /// Finds the obstacles of `sources` in a world.
-    pub(crate) fn find(sources: &[Source], world: &World, modifiers: &Modifiers) -> Self {
+    /// Tables for `sources` in a world, still empty.
+    pub(crate) fn new(sources: &[Source], world: &World) -> Self {
         let plain = |s: &Source| s.sampled && !s.glow && s.spot.is_none() && s.image.is_none();
-        let table = |s: &Source| if plain(s) { Table::of(s, world, modifiers) } else { Table::default() };
-        Self { tables: sources[..sources.len().min(MOST)].par_iter().map(table).collect() }
+        let table = |s: &Source| if plain(s) { Table::new(s, world) } else { Table::default() };
+        Self { tables: sources[..sources.len().min(MOST)].iter().map(table).collect() }
     }
 
     /// True if the obstacle that is known for the point of a hit blocks a sample of source `id`.
     pub(crate) fn block(&self, id: SourceId, scene: &Prepared, ray: &crate::ray::Ray<'_>, sample: &Sample) -> bool {
         let Some(table) = self.tables.get(id as usize).filter(|t| !t.cells.is_empty()) else { return false };
         let source = &scene.sources[id as usize];
-        let Some(obstacle) = table.at(source, ray.point) else { return false };
+        let Some(obstacle) = table.at(source, scene, ray.point) else { return false };
         // A flat surface cannot shade itself.
         if ray.hit.as_ref().is_some_and(|h| h.object == obstacle) && scene.is_flat(obstacle) {
             return false;
@@ -82,52 +85,51 @@ impl Obstacles {
 }
 
 impl Table {
-    fn of(source: &Source, world: &World, modifiers: &Modifiers) -> Self {
-        let first = |mut origin: DVec3, direction: DVec3| {
-            let mut hit = world.nearest(&Ray { origin, direction, limit: FAR })?;
-            // From inside a source the way leads through its own surface.
-            for _ in 0..2 {
-                if hit.object == source.object {
-                    origin += direction * hit.distance;
-                    hit = world.nearest(&Ray { origin, direction, limit: FAR })?;
-                }
-            }
-            // Only what belongs to the main scene and stops every shadow ray is sure to block.
-            let sure = hit.placement.is_none() && !hit.mesh_triangle && modifiers.blocks(hit.modifier);
-            (sure && hit.object != source.object).then_some(hit.object)
-        };
-        let first = |origin: DVec3, direction: DVec3| first(origin, direction).unwrap_or(VOID);
-        if matches!(source.emitter, Emitter::Distant) {
-            let Some(beam) = Beam::across(source.centre, world) else { return Self::default() };
-            let far = source.centre * beam.cell * POSITIONS as f64 * 4.0;
-            let middle = {
-                let b = world.bounds();
-                (b.min + b.max) * 0.5
-            };
-            let cells = (0..POSITIONS * POSITIONS)
-                .map(|i| {
-                    let u = beam.low[0] + ((i % POSITIONS) as f64 + 0.5) * beam.cell;
-                    let v = beam.low[1] + ((i / POSITIONS) as f64 + 0.5) * beam.cell;
-                    let on = beam.frame.u * u + beam.frame.v * v + source.centre * middle.dot(source.centre);
-                    first(on + far, -source.centre)
-                })
-                .collect();
-            return Self { cells, beam: Some(beam) };
+    fn new(source: &Source, world: &World) -> Self {
+        let unknown = |count: usize| (0..count).map(|_| AtomicU32::new(UNKNOWN)).collect();
+        if !matches!(source.emitter, Emitter::Distant) {
+            return Self { cells: unknown(6 * DIRECTIONS * DIRECTIONS), beam: None };
         }
-        let seen = |d: DVec3| d.dot(source.normal) > -CELL;
-        let cells = (0..6 * DIRECTIONS * DIRECTIONS)
-            .map(cell_direction)
-            .map(|d| if seen(d) { first(source.centre, d) } else { VOID })
-            .collect();
-        Self { cells, beam: None }
+        let Some(beam) = Beam::across(source.centre, world) else { return Self::default() };
+        Self { cells: unknown(POSITIONS * POSITIONS), beam: Some(beam) }
     }
 
-    fn at(&self, source: &Source, point: DVec3) -> Option<ObjectId> {
-        let cell = match &self.beam {
+    /// The obstacle of the cell that a point lies in.
+    fn at(&self, source: &Source, scene: &Prepared, point: DVec3) -> Option<ObjectId> {
+        let index = match &self.beam {
             Some(beam) => beam.index(point)?,
             None => direction_cell(point - source.centre),
         };
-        self.cells.get(cell).copied().filter(|&o| o != VOID)
+        // Whoever fills a cell fills it with the same.
+        let cell = self.cells.get(index)?;
+        let mut obstacle = cell.load(Ordering::Relaxed);
+        if obstacle == UNKNOWN {
+            obstacle = self.find(source, scene, index).unwrap_or(VOID);
+            cell.store(obstacle, Ordering::Relaxed);
+        }
+        (obstacle != VOID).then_some(obstacle)
+    }
+
+    #[cold]
+    fn find(&self, source: &Source, scene: &Prepared, index: usize) -> Option<ObjectId> {
+        let (mut origin, direction) = match &self.beam {
+            Some(beam) => (beam.start(source.centre, index, &scene.world), -source.centre),
+            None => (source.centre, cell_direction(index)),
+        };
+        if self.beam.is_none() && direction.dot(source.normal) <= -CELL {
+            return None;
+        }
+        let mut hit = scene.world.nearest(&Ray { origin, direction, limit: FAR })?;
+        // From inside a source the way leads through its own surface.
+        for _ in 0..2 {
+            if hit.object == source.object {
+                origin += direction * hit.distance;
+                hit = scene.world.nearest(&Ray { origin, direction, limit: FAR })?;
+            }
+        }
+        // Only what belongs to the main scene and stops every shadow ray is sure to block.
+        let sure = hit.placement.is_none() && !hit.mesh_triangle && scene.modifiers.blocks(hit.modifier);
+        (sure && hit.object != source.object).then_some(hit.object)
     }
 }
 
@@ -146,6 +148,16 @@ impl Beam {
         let (u, v) = (span(frame.u), span(frame.v));
         let cell = (u.1 - u.0).max(v.1 - v.0) / POSITIONS as f64;
         (cell > 0.0).then_some(Self { frame, low: [u.0, v.0], cell })
+    }
+
+    /// A point outside the world from which the middle of a cell is seen along the beam.
+    fn start(&self, direction: DVec3, index: usize, world: &World) -> DVec3 {
+        let middle = |i: usize, low: f64| low + (i as f64 + 0.5) * self.cell;
+        let u = middle(index % POSITIONS, self.low[0]);
+        let v = middle(index / POSITIONS, self.low[1]);
+        let bounds = world.bounds();
+        let along = ((bounds.min + bounds.max) * 0.5).dot(direction) + self.cell * POSITIONS as f64 * 4.0;
+        self.frame.u * u + self.frame.v * v + direction * along
     }
 
     fn index(&self, p: DVec3) -> Option<usize> {

@@ -17,7 +17,8 @@ pub(crate) struct Part {
     pub(crate) share: f64,
 }
 
-const WHOLE: Part = Part { centre: [0.0; 3], half: [1.0; 3], share: 1.0 };
+/// All of a source.
+pub(super) const WHOLE: Part = Part { centre: [0.0; 3], half: [1.0; 3], share: 1.0 };
 
 /// The parts of `source` for a point, in subdivision order; `ratio` is `-ds` over the weight of the ray that hit
 /// (infinite for undivided sources). Nothing if the point cannot be lit.
