@@ -61,7 +61,7 @@ pub use file::{Segment, missing, remove_done, segments};
 pub use hemisphere::Hemisphere;
 pub use light::Light;
 pub use observe::{Clock, LEVELS, Observed};
-pub use params::{ASSUMED_REFLECTANCE, Limits, MOST_OVERLAP, OVERLAP, Params, Spacing, Systems};
+pub use params::{ASSUMED_REFLECTANCE, Bounces, Limits, MOST_OVERLAP, OVERLAP, Params, Spacing, Systems};
 pub use record::Record;
 pub use sampler::{Answer, Miss, Query, Sample, SampleRay, Sampler};
 pub use steps::{CORES, Parallelism, Steps};

@@ -55,10 +55,20 @@ pub struct Systems {
     pub neighbour_clamping: bool,
     /// `--measured-reuse`: from level 1 on few samples, used once, where records are hardly reused.
     pub measured_reuse: bool,
-    /// `--mixed-bounces`: questions of deeper levels are answered with all bounces of the records they find, as in Radiance.
-    pub mixed_bounces: bool,
+    /// `--bounces`: what questions of deeper levels get of records nearer the eye.
+    pub bounces: Bounces,
     /// `--spacing`: what decides how far records reach.
     pub spacing: Spacing,
+}
+
+/// What questions get of records that have more bounces than are left at their level.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Bounces {
+    /// The bounces that are left.
+    #[default]
+    Apart,
+    /// All, as in Radiance.
+    Mixed,
 }
 
 /// What decides how far records reach.
@@ -99,7 +109,7 @@ impl Params {
 
     /// True if questions of deeper levels are answered without the bounces that they have no more.
     pub(crate) fn tells_bounces_apart(&self) -> bool {
-        self.bounces > 1 && !self.systems.mixed_bounces
+        self.bounces > 1 && self.systems.bounces == Bounces::Apart
     }
 
     /// The summed weight that makes an answer at a level.

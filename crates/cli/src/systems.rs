@@ -4,7 +4,7 @@ use crate::common::Carries;
 use crate::failure::Failure;
 use crate::rendering::Rendering;
 use crate::table::{Place, Row};
-use ambit_render::{MOST_OVERLAP, Spacing};
+use ambit_render::{Bounces, MOST_OVERLAP, Spacing};
 
 /// The rows of `--unbiased`, its parts, and the systems of the irradiance cache.
 pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
@@ -34,11 +34,19 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
             "weigh deeper irradiance values by the actual reflectances, not by half for each bounce: fewer are shared",
         ),
         Row::new(
-            "-mixed-bounces",
-            Place::Bare(|s: &mut S| light(s).options.ambient.systems.mixed_bounces = true),
-            "let irradiance values of the first bounce answer where deeper ones are wanted with all their bounces, as in \
-             Radiance, not only with those that -ab leaves there",
-        ),
+            "-bounces",
+            Place::Word(|s: &mut S, how, _| {
+                light(s).options.ambient.systems.bounces = match how.as_str() {
+                    "apart" => Bounces::Apart,
+                    "mixed" => Bounces::Mixed,
+                    other => return Err(Failure::choice("--bounces", other, &["apart", "mixed"])),
+                };
+                Ok(())
+            }),
+            "what irradiance values nearer the eye answer where deeper ones are wanted: apart (the bounces that -ab leaves \
+             there) or mixed (all they have, as in Radiance, which brings some light of further bounces)",
+        )
+        .values("HOW"),
         Row::new(
             "-neighbor-clamping",
             Place::Bare(|s: &mut S| light(s).options.ambient.systems.neighbour_clamping = true),

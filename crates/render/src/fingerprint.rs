@@ -8,7 +8,7 @@
 
 use crate::prepare::{Contents, Definition, Environment, Loaded};
 use crate::{Options, Selection};
-use ambit_ambient::{Fingerprint, Gravity, Mark, MarkLine, Spacing};
+use ambit_ambient::{Bounces, Fingerprint, Gravity, Mark, MarkLine, Spacing};
 use ambit_base::{Rgb, hash_bits, hash_point, mix};
 use ambit_file::{encode_float, general};
 use ambit_octree::Mesh;
@@ -313,7 +313,7 @@ fn option_marks(options: &Options, edge: f64, relays: bool) -> Vec<Mark> {
         slight("spacing", "--spacing", spacing(a.systems.spacing).to_owned()),
         slight("clamping", "--neighbor-clamping", switch(a.systems.neighbour_clamping)),
         slight("weights", "--actual-weights", switch(a.systems.actual_weights)),
-        slight("mixed", "--mixed-bounces", switch(a.systems.mixed_bounces)),
+        slight("bounces", "--bounces", if a.systems.bounces == Bounces::Mixed { "mixed" } else { "apart" }.to_owned()),
         slight("overlap", "--overlap", g(f64::from(a.overlap))),
         slight("measured", "--measured-reuse", switch(a.systems.measured_reuse)),
     ]

@@ -26,8 +26,8 @@ mod unbounded;
 mod walk;
 mod work;
 
+pub use ambit_ambient::{Bounces, MOST_OVERLAP, Spacing, Systems};
 pub use ambit_ambient::{Fingerprint, Reuse};
-pub use ambit_ambient::{MOST_OVERLAP, Spacing, Systems};
 pub use error::Error;
 pub use fingerprint::SceneFingerprint;
 pub use options::{Ambient, Direct, Limits, Medium, Options, Selection, Specular};

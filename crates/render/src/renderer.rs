@@ -16,7 +16,7 @@ use crate::tracer::{Origin, Tracer};
 use crate::walk::Walk;
 use crate::work::Work;
 use crate::{Error, Options};
-use ambit_ambient::{Cache, Miss, Params, Systems};
+use ambit_ambient::{Bounces, Cache, Miss, Params, Systems};
 use ambit_base::{DVec3, FAR, Notify, Rgb, Stream, hash_bits};
 use ambit_scene::{ObjectId, VOID};
 use std::sync::{Mutex, PoisonError};
@@ -217,7 +217,7 @@ fn params(options: &Options, passes: usize) -> Params {
         passes: passes as u8,
         seed: options.seed,
         // Without an end to bounces none is the last.
-        systems: Systems { mixed_bounces: a.systems.mixed_bounces || a.unbounded, ..a.systems },
+        systems: if a.unbounded { Systems { bounces: Bounces::Mixed, ..a.systems } } else { a.systems },
     }
 }
 
