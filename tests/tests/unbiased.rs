@@ -164,3 +164,27 @@ fn surfaces_that_send_out_more_than_they_get_are_told_of() {
     assert_eq!(answer.status, Some(1), "{}", answer.err);
     assert!(answer.err.contains("more than they receive"), "{}", answer.err);
 }
+
+#[test]
+fn deeper_questions_get_no_more_bounces_than_are_left() {
+    if foreign() {
+        return; // Real Radiance mixes bounces.
+    }
+    let reflectance = 0.7;
+    let (scene, [_, wall]) = sphere(reflectance);
+    // Rays at the wall itself, so that what the eye sees and what hemispheres see share records.
+    let outward = |line: String| {
+        let n: Vec<f64> = line.split(' ').map(|w| w.parse().expect("a number")).collect();
+        format!("{} {} {} {} {} {}", 0.5 * n[0], 0.5 * n[1], 0.5 * n[2], -n[3], -n[4], -n[5])
+    };
+    let rays: Vec<String> = sensors(400).into_iter().map(outward).collect();
+    for bounces in [2, 3] {
+        let series = wall * (1..=bounces + 1).map(|k| reflectance.powi(k)).sum::<f64>() / PI;
+        let options = format!("-I- -ab {bounces} -aa .1 -ad 256 -as 0 -ar 0 -lw 1e-6 -n 2");
+        let (apart, error) = mean(&scene, &options, &rays);
+        assert!(error < 2e-3 * series, "{error}");
+        assert!((apart - series).abs() < 2e-3 * series, "{bounces} bounces: {apart} for {series}");
+        let (mixed, _) = mean(&scene, &(options + " --bounces mixed"), &rays);
+        assert!(mixed > 1.003 * series, "{bounces} bounces, mixed: {mixed} for {series}");
+    }
+}

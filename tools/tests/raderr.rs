@@ -60,7 +60,7 @@ fn row<'a>(table: &'a str, rung: &str, program: &str) -> Vec<&'a str> {
 fn pictures_of_two_programs() {
     let bench = Bench::new();
     let ours = env!("CARGO_BIN_EXE_rpict");
-    let common = format!("box.rad --size 32 --ladder ladder --reference box.ref --passes 24 -q -- {VIEW}");
+    let common = format!("box.rad --size 32 --ladder ladder --reference box.ref --passes 96 -q -- {VIEW}");
     let line =
         format!("--repeats 2 --against {ours} --json box.json --csv box.csv --svg box.svg --png box.png {common}");
     let table = bench.text(&line);
