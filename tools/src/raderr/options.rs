@@ -147,7 +147,7 @@ pub(super) struct Measure {
     #[arg(
         long,
         value_name = "WORDS",
-        default_value = "-aa 0 -as 0 -ad 64 -lw 1e-5",
+        default_value = "-aa 0 -as 0 -ad 64 -dt 0 -lw 1e-5",
         allow_hyphen_values = true,
         help_heading = "Reference"
     )]
