@@ -4,6 +4,7 @@ use crate::average::Average;
 use crate::clamping::Reins;
 use crate::components::Components;
 use crate::light::Light;
+use crate::lookup::Sum;
 use crate::observe::{Observer, Stopwatch};
 use crate::params::{Limits, Params};
 use crate::radii::ANISOTROPY;
@@ -169,6 +170,13 @@ impl Cache {
         light.ending(left.max(1) as usize, self.fallback())
     }
 
+    /// What records come to for a question of a level. Where no bounce is left below, what the last one brought is known even of
+    /// records that have forgotten it.
+    pub(crate) fn answer(&self, sum: &Sum, level: u8) -> Option<Light> {
+        let light = sum.answer()?;
+        Some(if level == 0 { light } else { self.ending(level, light) })
+    }
+
     /// Answers from what is stored. Include and exclude lists are the caller's business, before this.
     pub fn ask<S: Sampler>(&self, sampler: &S, query: &Query<S::Origin>) -> Answer {
         if self.ends_at(query.level) {
@@ -183,7 +191,7 @@ impl Cache {
     /// The interpolated value, if records of enough weight qualify.
     pub(crate) fn lookup<S: Sampler>(&self, sampler: &S, query: &Query<S::Origin>) -> Option<Light> {
         let sum = self.store.lookup(&self.limits, sampler, query);
-        sum.answer().filter(|_| sum.is_enough(self.params.enough(query.level)))
+        self.answer(&sum, query.level).filter(|_| sum.is_enough(self.params.enough(query.level)))
     }
 }
 

@@ -106,7 +106,8 @@ impl Points {
         for k in (0..count).step_by(LANES) {
             let ([ax, ay, az, near_a], [bx, by, bz, near_b]) = (self.eight(from + k), self.eight(to + k));
             let ([px, py, pz], [qx, qy, qz]) = (self.slopes(from + k), self.slopes(to + k));
-            // How much nearer than the other's plane each is; one in front, one behind: the planes meet between.
+            // How much in front of the other's plane the first is, and behind it the second: of different signs where both
+            // are in front or both behind, and the planes meet between.
             let a = near_a - (qx * ax + qy * ay + qz * az);
             let b = px * bx + py * by + pz * bz - near_b;
             let size = px * px + py * py + pz * pz + qx * qx + qy * qy + qz * qz;

@@ -131,7 +131,7 @@ impl Cache {
             let found: Vec<_> = open
                 .iter()
                 .zip(found)
-                .map(|(&q, sum)| sum.answer().filter(|_| weights[q] >= enough || sum.is_enough(enough)))
+                .map(|(&q, sum)| self.answer(&sum, level).filter(|_| weights[q] >= enough || sum.is_enough(enough)))
                 .collect();
             if let Some(reuse) = &mut self.reuse {
                 let own = picks.iter().zip(&outcomes).filter(|(_, o)| matches!(o, Outcome::Record(..)));
@@ -147,7 +147,7 @@ impl Cache {
         }
         // The round's records alone gave a provisional answer; all of them give the final one.
         let last = self.steps.in_order(queries.len(), FEW, FEW / 2, |q| {
-            if picked[q] { None } else { self.store.lookup(&limits, sampler, &queries[q]).answer() }
+            if picked[q] { None } else { self.answer(&self.store.lookup(&limits, sampler, &queries[q]), level) }
         });
         for (value, last) in values.iter_mut().zip(last) {
             *value = last.unwrap_or(*value);

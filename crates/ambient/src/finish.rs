@@ -155,12 +155,12 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
 /// Mean radiance of the cells, those whose samples were refused being black.
 pub(crate) fn mean<'c>(cells: impl ExactSizeIterator<Item = &'c Cell>) -> Light {
     let share = 1.0 / cells.len() as f64;
-    let (mut sum, mut late) = (DVec3::ZERO, Light::default());
+    let (mut sum, mut late) = (DVec3::ZERO, Light::NONE.late);
     for cell in cells.filter(|c| c.distance > 0.0) {
         sum += cell.light.value.as_dvec3();
-        late += cell.light;
+        late.iter_mut().zip(cell.light.late).for_each(|(sum, l)| *sum += l);
     }
-    Light { value: (sum * share).as_vec3(), ..late * share as f32 }
+    Light { value: (sum * share).as_vec3(), late: late.map(|l| l * share as f32) }
 }
 
 /// The ellipse of the Hessian and the rotational gradient of a hemisphere of the given mean radiance; none in the dark.

@@ -59,7 +59,7 @@ pub use file::{AmbientFile, Contents, FORMAT, FileError, Opened, Opening, PATIEN
 pub use file::{Comparison, Fingerprint, Gravity, Mark, MarkLine, fingerprint_lines};
 pub use file::{Segment, missing, remove_done, segments};
 pub use hemisphere::Hemisphere;
-pub use light::Light;
+pub use light::{APART, Light};
 pub use observe::{Clock, LEVELS, Observed};
 pub use params::{ASSUMED_REFLECTANCE, Bounces, Limits, MOST_OVERLAP, OVERLAP, Params, Spacing, Systems};
 pub use record::Record;

@@ -4,13 +4,13 @@
 //! them, so that `-ab 2` brings some of the light of the third bounce, the more the more records the eye has made. Here
 //! hemispheres add up, beside the light that their samples bring, what of it the last bounce and the last two brought, at
 //! no ray more; a question one level deeper than the record is answered without the former, two levels deeper without the
-//! latter. Ambient files hold whole values only: records read from them answer as in Radiance.
+//! latter. Ambient files hold whole values only: records read from them answer as in Radiance, with all their bounces.
 
 use ambit_base::Rgb;
 use std::ops::{AddAssign, Mul};
 
 /// How many of the last bounces are told apart; questions still deeper are answered as the deepest that is.
-pub(crate) const APART: usize = 2;
+pub const APART: usize = 2;
 
 /// Light by bounces: radiance, or irradiance/π, W/(sr·m²).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,8 +28,9 @@ impl Light {
     pub(crate) fn deeper(self, levels: u8) -> Self {
         let Some(first) = usize::from(levels).checked_sub(1) else { return self };
         let without = self.late[first.min(APART - 1)];
-        let late = std::array::from_fn(|k| self.late[(first + 1 + k).min(APART - 1)] - without);
-        Self { value: (self.value - without).max(Rgb::ZERO), late }
+        // No later bounce brings more than an earlier one.
+        let step = self.late[1] - self.late[0];
+        Self { value: (self.value - without).max(Rgb::ZERO), late: [step, 2.0 * step] }
     }
 
     /// What a calculation of `bounces` (1 at least) comes to, in place of whose last hemispheres stands `end`.
@@ -95,9 +96,9 @@ mod tests {
         // Bounces of 8, 4, 2 and 1.
         let whole = light(15.0, [1.0, 3.0]);
         assert_eq!(whole.deeper(0), whole);
-        assert_eq!(whole.deeper(1), light(14.0, [2.0, 2.0]));
-        assert_eq!(whole.deeper(2), light(12.0, [0.0, 0.0]));
-        assert_eq!(whole.deeper(3), light(12.0, [0.0, 0.0]));
+        assert_eq!(whole.deeper(1), light(14.0, [2.0, 4.0]), "2 and 6 in truth");
+        assert_eq!(whole.deeper(2), light(12.0, [2.0, 4.0]), "4 and 12 in truth");
+        assert_eq!(whole.deeper(3), light(12.0, [2.0, 4.0]));
         assert_eq!(light(1.0, [2.0, 2.0]).deeper(1).value, Rgb::ZERO, "no light is negative");
     }
 

@@ -59,10 +59,16 @@ impl Record {
             && self.values().all(|v| v.to_array().iter().all(|&c| c >= 0.0 && below(c)))
     }
 
-    /// The record as an ambient file of such components would return it.
+    /// The record as an ambient file of such components would return it; what the last bounces brought, which files do not
+    /// hold, is kept.
     pub fn quantised(&self, components: &Components) -> Self {
         let kept = Layout::CURRENT.decode(&Layout::CURRENT.encode(self, components), components);
-        Self { late: self.late.clone(), ..kept }
+        // Rounding must not move what fewer bounces bring, which files do not hold.
+        let rounded = |(pass, late): (usize, &[Rgb; APART])| {
+            let off = kept.of_pass(pass as u8) - self.of_pass(pass as u8);
+            late.map(|l| l + off)
+        };
+        Self { late: self.late.iter().enumerate().map(rounded).collect(), ..kept }
     }
 
     /// Irradiance/π in each pass.

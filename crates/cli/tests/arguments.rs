@@ -264,6 +264,7 @@ fn options_with_a_choice_say_which() {
     for (option, choice) in [
         ("--reuse", &["auto", "strict", "append", "read-only", "off"][..]),
         ("--measured-reuse", &["auto", "on", "off"]),
+        ("--bounces", &["apart", "mixed"]),
         ("--spacing", &["hessian", "classical"]),
         ("--overlap", &["0", "0.9"]),
     ] {

@@ -313,7 +313,11 @@ fn option_marks(options: &Options, edge: f64, relays: bool) -> Vec<Mark> {
         slight("spacing", "--spacing", spacing(a.systems.spacing).to_owned()),
         slight("clamping", "--neighbor-clamping", switch(a.systems.neighbour_clamping)),
         slight("weights", "--actual-weights", switch(a.systems.actual_weights)),
-        slight("bounces", "--bounces", if a.systems.bounces == Bounces::Mixed { "mixed" } else { "apart" }.to_owned()),
+        slight(
+            "bounces",
+            "--bounces",
+            if a.unbounded || a.systems.bounces == Bounces::Mixed { "mixed" } else { "apart" }.to_owned(),
+        ),
         slight("overlap", "--overlap", g(f64::from(a.overlap))),
         slight("measured", "--measured-reuse", switch(a.systems.measured_reuse)),
     ]

@@ -6,7 +6,7 @@ use crate::ray::{ClipSet, Fate, Interior, Kinds, Ray};
 use crate::sources::Tally;
 use crate::walk::Walk;
 use crate::work::Work;
-use ambit_ambient::{Cache, Light, Miss, Query, Sample, SampleRay, Sampler};
+use ambit_ambient::{APART, Cache, Light, Miss, Query, Sample, SampleRay, Sampler};
 use ambit_base::{DVec3, EPSILON, FAR, Rgb, Stream, Vec3};
 use ambit_trace::Opacity;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -100,7 +100,7 @@ impl Tracer<'_> {
             Fate::Refused => return None,
         }
         let first = misses.len();
-        work.late = Default::default();
+        work.late = [Rgb::ZERO; APART];
         let mut walk = Walk { tracer: self, cache, work, misses, pass, observer: () };
         walk.evaluate(&mut ray);
         let rest = walk.endless(first);

@@ -1,6 +1,7 @@
 //! Scratch memory and counters of one thread: nothing on the ray path allocates once these have grown.
 
 use crate::sources::{Candidate, Chosen, Count, Part, SourceId, Tally};
+use ambit_ambient::APART;
 use ambit_base::Rgb;
 
 /// What one thread reuses from ray to ray.
@@ -9,7 +10,7 @@ pub(crate) struct Work {
     /// Rays traced.
     pub(crate) rays: u64,
     /// What of a hemisphere sample's light the last bounces brought, as the cache answered.
-    pub(crate) late: [Rgb; 2],
+    pub(crate) late: [Rgb; APART],
     pub(crate) candidates: Vec<Candidate>,
     pub(crate) parts: Vec<Part>,
     /// Lamps that stand for all.
@@ -27,7 +28,7 @@ impl Work {
     pub(crate) fn new(sources: usize) -> Self {
         Self {
             rays: 0,
-            late: [Rgb::ZERO; 2],
+            late: [Rgb::ZERO; APART],
             candidates: Vec::new(),
             parts: Vec::new(),
             chosen: Vec::new(),

@@ -7,7 +7,7 @@
 //! bring most (systematic sampling with unequal probabilities, Madow 1949).
 //!
 //! A table is made when a point asks for it first. It depends on nothing but its cell and side, so it does not matter who
-//! asks, and there are no more of them than the grid has places.
+//! asks, and there are no more of them than the grid has places for; the more lamps, the fewer.
 
 use super::Lamp;
 use ambit_base::DVec3;
@@ -16,8 +16,10 @@ use std::sync::OnceLock;
 
 /// Lamps that are looked at, in the mean.
 const LOOKED_AT: usize = 8;
-/// Cells of the grid, at most.
+/// Cells of the grid, about: cubes of a tenth of a room, within which lamps change little.
 const CELLS: f64 = 1024.0;
+/// Lamps in all tables together, at most about: 12 bytes each, so that many lamps have fewer cells instead.
+const ENTRIES: f64 = 4e6;
 /// Sides that a surface may face: along the axes, and all of them.
 const SIDES: usize = 7;
 /// The share of the choice that is even, for lamps that bring more to a point than the cell would tell.
@@ -74,17 +76,17 @@ impl Choice {
         if lamps.len() <= LOOKED_AT || bounds.is_empty() {
             return Self::default();
         }
-        Self::over(bounds)
+        Self::over(bounds, CELLS.min(ENTRIES / (lamps.len() * SIDES) as f64).max(1.0))
     }
 
-    fn over(bounds: &Bounds) -> Self {
+    fn over(bounds: &Bounds, cells: f64) -> Self {
         let margin = MARGIN * (bounds.max - bounds.min).max_element();
         let low = bounds.min - margin;
         let size = bounds.max + margin - low;
         // Cubes, no flatter in number than one along each axis.
-        let mut cell = (size.element_product() / CELLS).cbrt().max(size.max_element() / CELLS);
+        let mut cell = (size.element_product() / cells).cbrt().max(size.max_element() / cells);
         let number = |cell: f64| size.to_array().map(|s| (s / cell).ceil().max(1.0));
-        while number(cell).iter().product::<f64>() > 2.0 * CELLS {
+        while number(cell).iter().product::<f64>() > 2.0 * cells {
             cell *= 1.1;
         }
         let counts = number(cell).map(|n| n as usize);
@@ -114,8 +116,7 @@ impl Choice {
         Some(Spot { index: index * SIDES + side, centre, half: 0.5 * self.cell, facing })
     }
 
-    /// The table of a spot, made of what each lamp (by index) brings there if it has not been asked for before; None:
-    /// surely nothing.
+    /// The table of a spot, made of what each lamp (by index) brings there if it has not been asked for before.
     #[inline]
     pub(crate) fn table(&self, spot: &Spot, make: impl FnOnce() -> Vec<(u32, f32)>) -> &Table {
         self.tables[spot.index].get_or_init(|| Table::new(make(), LOOKED_AT))
@@ -256,7 +257,8 @@ mod tests {
 
     #[test]
     fn cells_hold_their_points() {
-        let choice = Choice::over(&Bounds { min: DVec3::new(-1.0, 2.0, 0.0), max: DVec3::new(39.0, 12.0, 0.0) });
+        let bounds = Bounds { min: DVec3::new(-1.0, 2.0, 0.0), max: DVec3::new(39.0, 12.0, 0.0) };
+        let choice = Choice::over(&bounds, CELLS);
         for i in 0..1000 {
             let [x, y] = ambit_base::Stream::new(i, 3).two();
             let point = DVec3::new(-1.0 + 40.0 * x, 2.0 + 10.0 * y, 0.0);

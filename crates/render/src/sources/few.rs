@@ -1,5 +1,6 @@
 //! Direct light where a hemisphere sample ends: few lamps are looked at and fewer shadows tested, chosen at random so
-//! that the mean is right. What that adds to the noise of the hemisphere is small beside what it has anyway.
+//! that the mean is right: of more than two candidates two shadows are tested. What that adds to the noise of the
+//! hemisphere is small beside what it has anyway.
 
 use super::choice::Share;
 use super::direct::{Candidate, brightness, index, rank};
@@ -9,6 +10,9 @@ use crate::observer::Observer;
 use crate::ray::{Interior, Ray};
 use crate::walk::Walk;
 use ambit_base::{Colour, DVec3, FAR, Rgb, Stream};
+
+/// What counts of light that comes from the far side of the axis nearest to a normal: surfaces lean from it by up to 55°.
+const LEAN: f64 = 0.15;
 
 /// Shadow tests at most.
 pub(super) const TESTED: usize = 2;
@@ -114,6 +118,3 @@ impl Walk<'_> {
         emitted.brightness() * (sample.solid_angle * cosine) as f32
     }
 }
-
-/// What counts of light that comes from the far side of the axis nearest to a normal.
-const LEAN: f64 = 0.15;
