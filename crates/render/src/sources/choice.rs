@@ -94,10 +94,16 @@ impl Choice {
         Self { low, cell, counts, tables }
     }
 
+    /// True if there are more lamps than are looked at.
+    #[inline]
+    pub(crate) fn has_many(&self) -> bool {
+        !self.tables.is_empty()
+    }
+
     /// Where a point belongs that faces a side. None if every lamp is to be looked at.
     #[inline]
     pub(crate) fn spot(&self, point: DVec3, facing: Option<DVec3>) -> Option<Spot> {
-        if self.tables.is_empty() {
+        if !self.has_many() {
             return None;
         }
         let at = ((point - self.low) / self.cell).floor();

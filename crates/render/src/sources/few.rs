@@ -1,5 +1,5 @@
 //! Direct light where a hemisphere sample ends: few lamps are looked at and fewer shadows tested, chosen at random so
-//! that the mean is right: of more than two candidates two shadows are tested. What that adds to the noise of the
+//! that the mean is right: of about eight candidates two shadows are tested. What that adds to the noise of the
 //! hemisphere is small beside what it has anyway.
 
 use super::choice::Share;
@@ -25,9 +25,10 @@ const LAMPS: u64 = 0x4c;
 const SHADOWS: u64 = 0x4d;
 
 impl<O: Observer> Walk<'_, O> {
-    /// True where a ray is one of a hemisphere's, so that few lamps will do; `-dt 0` wants all, and so does who looks on.
+    /// True where a ray is one of a hemisphere's and lamps are many, so that few will do; `-dt 0` wants all, and so does who
+    /// looks on. Few lamps are better asked all: what is known to block them spares more rays than choosing would.
     pub(super) fn asks_few(&self, ray: &Ray<'_>) -> bool {
-        !O::ACTIVE && ray.is_ambient() && self.tracer.options.direct.threshold > 0.0
+        !O::ACTIVE && self.tracer.scene.choice.has_many() && ray.is_ambient() && self.tracer.options.direct.threshold > 0.0
     }
 
     /// The lamps that stand for all at a ray's hit, what lies below the plane of `above` left out. None: all.
