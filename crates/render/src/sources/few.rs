@@ -28,7 +28,10 @@ impl<O: Observer> Walk<'_, O> {
     /// True where a ray is one of a hemisphere's and lamps are many, so that few will do; `-dt 0` wants all, and so does who
     /// looks on. Few lamps are better asked all: what is known to block them spares more rays than choosing would.
     pub(super) fn asks_few(&self, ray: &Ray<'_>) -> bool {
-        !O::ACTIVE && self.tracer.scene.choice.has_many() && ray.is_ambient() && self.tracer.options.direct.threshold > 0.0
+        !O::ACTIVE
+            && self.tracer.scene.choice.has_many()
+            && ray.is_ambient()
+            && self.tracer.options.direct.threshold > 0.0
     }
 
     /// The lamps that stand for all at a ray's hit, what lies below the plane of `above` left out. None: all.
