@@ -4,11 +4,12 @@ use std::path::Path;
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// A closed grey box with a lamp below the ceiling.
+/// A closed grey sphere with a ball in it and a lamp below the ceiling.
 const SCENE: &str = "\
 void plastic grey 0 0 5 .5 .5 .5 0 0
 void light glow 0 0 3 20 20 20
 grey bubble box 0 0 4 0 0 0 1
+grey sphere ball 0 0 4 .2 .3 -.3 .3
 glow sphere lamp 0 0 4 0 0 .6 .1
 ";
 
@@ -20,7 +21,7 @@ impl Bench {
     fn new() -> Self {
         let bench = Self(tempfile::tempdir().unwrap());
         std::fs::write(bench.path("box.rad"), SCENE).unwrap();
-        std::fs::write(bench.path("ladder"), "coarse: -aa .5 -ad 16\nfine: -aa .2 -ad 128 # slow\n").unwrap();
+        std::fs::write(bench.path("ladder"), "coarse: -aa 1 -ad 4 -as 0\nfine: -aa .35 -ad 49 # slow\n").unwrap();
         let points: Vec<_> = (0..12).map(|i| format!("{} 0 -.5 0 0 1", f64::from(i) * 0.03)).collect();
         std::fs::write(bench.path("points"), points.join("\n")).unwrap();
         bench
@@ -60,7 +61,7 @@ fn row<'a>(table: &'a str, rung: &str, program: &str) -> Vec<&'a str> {
 fn pictures_of_two_programs() {
     let bench = Bench::new();
     let ours = env!("CARGO_BIN_EXE_rpict");
-    let common = format!("box.rad --size 32 --ladder ladder --reference box.ref --passes 96 -q -- {VIEW}");
+    let common = format!("box.rad --size 32 --ladder ladder --reference box.ref --passes 24 -q -- {VIEW}");
     let line =
         format!("--repeats 2 --against {ours} --json box.json --csv box.csv --svg box.svg --png box.png {common}");
     let table = bench.text(&line);
@@ -92,7 +93,7 @@ fn pictures_of_two_programs() {
     bench.text("page --out speed.md box.json");
     let page = std::fs::read_to_string(bench.path("speed.md")).unwrap();
     assert!(
-        page.contains("## box") && page.contains("](speed/box.svg)") && page.contains("`-aa .2 -ad 128`"),
+        page.contains("## box") && page.contains("](speed/box.svg)") && page.contains("`-aa .35 -ad 49`"),
         "{page}"
     );
     assert!(bench.path("speed/box.svg").exists());
