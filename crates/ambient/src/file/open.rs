@@ -114,7 +114,12 @@ impl Entry<'_> {
         let open = |path: &Path| File::options().read(true).write(true).create_new(true).open(path);
         // A process of this name is gone: what it left is in the way.
         let _ = std::fs::remove_file(&aside);
-        let file = open(&aside).map_err(io_error("open", &self.name))?;
+        let file = match open(&aside) {
+            Ok(file) => file,
+            // Another of this name (in a container, say) is at it this very moment.
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => return Ok(None),
+            Err(e) => return Err(io_error("open", &self.name)(e)),
+        };
         let linked = (&file).write_all(&self.head(None)).and_then(|()| std::fs::hard_link(&aside, self.path));
         let _ = std::fs::remove_file(&aside);
         let full = [ErrorKind::StorageFull, ErrorKind::QuotaExceeded, ErrorKind::FileTooLarge];

@@ -327,13 +327,14 @@ fn processes_share_a_file_without_losing_records() {
                 .args(["--exact", "file::tests::write_in_a_child", "--ignored"])
                 .env(NAME, folder.file())
                 .env(NUMBER, number.to_string())
-                .stdout(std::process::Stdio::null())
+                .stdout(std::process::Stdio::piped())
                 .spawn()
                 .unwrap()
         })
         .collect();
-    for mut child in children {
-        assert!(child.wait().unwrap().success());
+    for child in children {
+        let done = child.wait_with_output().unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stdout));
     }
     let heard = Heard::default();
     let mut found: Vec<u32> = try_open(&folder.file(), &heard).unwrap().records.iter().map(|r| r.corral).collect();
