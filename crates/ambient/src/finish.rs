@@ -15,7 +15,7 @@ use crate::radii::{Ellipse, circle, ellipse, split_sphere, turned};
 use crate::record::Record;
 use crate::sampler::Query;
 use crate::tilt::Tilt;
-use ambit_base::{Colour, DVec3, EPSILON, Vec3};
+use ambit_base::{Colour, DVec3, EPSILON, Rgb, Vec3};
 
 /// Share of the black floor in relative radiances, which keeps black occluders visible to the Hessian.
 const FLOOR: f64 = 0.01;
@@ -73,22 +73,6 @@ impl Outcome {
             other => other,
         }
     }
-
-    /// What all passes together have come to, with the light of each.
-    pub(crate) fn by_pass<O>(self, query: &Query<O>, mut lights: impl ExactSizeIterator<Item = Light>) -> Self {
-        match self {
-            Self::Record(mut record, _) => {
-                let lights: Vec<Light> = lights.collect();
-                record.value = lights[0].value;
-                record.further = lights[1..].iter().map(|l| l.value).collect();
-                record.late = lights.iter().map(|l| l.late).collect();
-                let answer = answer(&record, query);
-                if record.is_plausible() { Self::Record(record, answer) } else { Self::Once(answer) }
-            }
-            Self::Once(_) => Self::Once(lights.nth(usize::from(query.pass)).unwrap_or_default()),
-            Self::Nothing => Self::Nothing,
-        }
-    }
 }
 
 /// The least distance that counts, so that no reciprocal gets out of hand.
@@ -107,19 +91,25 @@ pub(crate) fn once<O>(query: &Query<O>, plan: &Hemisphere, cells: &[Cell]) -> Ou
     if taken == 0 { Outcome::Nothing } else { Outcome::Once(mean(cells.iter()) * tilt.factor(plan, query.shading)) }
 }
 
-/// Turns cells into a record.
-pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, cells: &[Cell]) -> Outcome {
+/// Turns cells into a record whose light in each pass is `lights`.
+pub(crate) fn finish<O>(
+    limits: &Limits,
+    query: &Query<O>,
+    plan: &Hemisphere,
+    cells: &[Cell],
+    lights: &[Light],
+) -> Outcome {
     let grid = plan.grid();
     let taken = cells.iter().filter(|c| c.distance > 0.0).count();
     if taken == 0 {
         return Outcome::Nothing;
     }
-    let light = mean(cells.iter());
+    let once = || Outcome::Once(lights.get(usize::from(query.pass)).copied().unwrap_or_default());
     if taken < cells.len() {
-        return Outcome::Once(light);
+        return once();
     }
     let weight = limits.record_weight(query.level, query.weight);
-    let bright = light.value.mean();
+    let bright = lights.iter().map(|light| light.value).sum::<Rgb>().mean() / lights.len() as f32;
     let lit = (f64::from(bright) > BLACK).then_some(bright);
     let (shape, rotation) = match grid {
         Grid::Disk { .. } => curved(limits, weight, plan, cells, lit),
@@ -140,15 +130,15 @@ pub(crate) fn finish<O>(limits: &Limits, query: &Query<O>, plan: &Hemisphere, ce
         gradient: shape.gradient.map(|g| g as f32),
         rotation: rotation.map(|h| h as f32),
         corral: corral(grid, |c| plan.local(c), |c| cells[c].nearness, reach, shape.turn),
-        value: light.value,
-        further: Box::default(),
-        late: Box::new([light.late]),
+        value: lights[0].value,
+        further: lights[1..].iter().map(|light| light.value).collect(),
+        late: lights.iter().map(|light| light.late).collect(),
     };
     if record.is_plausible() {
         let answer = answer(&record, query);
         Outcome::Record(record, answer)
     } else {
-        Outcome::Once(light)
+        once()
     }
 }
 

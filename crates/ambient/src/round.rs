@@ -228,10 +228,10 @@ impl<S: Sampler> Round<'_, S> {
                 other => other,
             };
         }
-        let outcome = finish(&self.cache.limits, query, plan, &together(cells, plan.len()));
         let passes = cells.len() / plan.len();
         let lights = (0..passes).map(|pass| mean(cells.iter().skip(pass).step_by(passes)));
-        let outcome = outcome.by_pass(query, lights.map(|light| self.cache.ending(query.level, light)));
+        let lights: Vec<Light> = lights.map(|light| self.cache.ending(query.level, light)).collect();
+        let outcome = finish(&self.cache.limits, query, plan, &together(cells, plan.len()), &lights);
         match &self.cache.quantised {
             Some(components) => outcome.quantised(query, components),
             None => outcome,

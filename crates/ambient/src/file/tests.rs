@@ -80,7 +80,7 @@ impl Folder {
 }
 
 /// An opening without fingerprint.
-fn plain(header: &[String]) -> Opening<'_> {
+pub(super) fn plain(header: &[String]) -> Opening<'_> {
     Opening {
         header,
         components: &RGB,

@@ -1,7 +1,7 @@
 //! Locks that cannot be had, and the segments that take the place of the file.
 
 use super::segment::names;
-use super::tests::{Folder, Heard, RGB, SPLITS, batch, lines};
+use super::tests::{Folder, Heard, batch, lines, plain};
 use super::*;
 use ambit_base::{Notify, Silent};
 use ambit_file::{FileLock, LockMode};
@@ -52,15 +52,7 @@ fn hold_in_a_child() {
 }
 
 fn impatient<'a>(header: &'a [String], owner: &'a str) -> Opening<'a> {
-    Opening {
-        header,
-        components: &RGB,
-        splits: SPLITS,
-        fingerprint: None,
-        reuse: Reuse::Auto,
-        patience: Duration::from_millis(100),
-        owner,
-    }
+    Opening { patience: Duration::from_millis(100), owner, ..plain(header) }
 }
 
 fn open(folder: &Folder, owner: &str, notify: &dyn Notify) -> Opened {

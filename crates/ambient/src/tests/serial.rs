@@ -2,7 +2,7 @@
 
 use super::room::Room;
 use crate::fill::key;
-use crate::finish::{Cell, Outcome, finish};
+use crate::finish::{Cell, Outcome, finish, mean};
 use crate::hemisphere::Hemisphere;
 use crate::params::{Limits, Params};
 use crate::supersample::{allocate, budget};
@@ -49,7 +49,8 @@ pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &m
         }
         cells[cell].light = sum * (1.0 / (count + 1) as f32);
     }
-    match finish(&cache.limits, query, &plan, &cells) {
+    let light = cache.ending(query.level, mean(cells.iter()));
+    match finish(&cache.limits, query, &plan, &cells, &[light]) {
         Outcome::Record(record, value) => {
             cache.insert(record);
             value
