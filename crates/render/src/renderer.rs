@@ -118,7 +118,9 @@ impl Renderer {
         notify: &dyn Notify,
         answers: &mut [Vec<Answer>],
     ) -> Result<(), Error> {
-        answers.iter_mut().for_each(|all| all.reserve(requests.len()));
+        for all in &mut *answers {
+            all.reserve(requests.len());
+        }
         for batch in requests.chunks(BATCH) {
             let outcome = self.batch(batch, answers);
             self.complain(notify);
