@@ -15,8 +15,8 @@ use std::path::Path;
 
 /// What answers rays: the renderer, or a stand-in for tests.
 pub(crate) trait Light {
-    /// Answers a batch, in order.
-    fn trace(&mut self, requests: &[Request]) -> Result<Vec<Answer>, Stop>;
+    /// Answers a batch, in order; the answers replace what is in `answers`.
+    fn trace(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Stop>;
     /// Answers one ray, and shows all that follow from it as they finish.
     fn trace_tree(&mut self, request: &Request, visit: Visit<'_>) -> Result<Answer, Stop>;
     /// Spectra of the last batch, if the calculation is by wavelength.
@@ -146,22 +146,22 @@ impl<'a> Scene<'a> {
 }
 
 impl Light for Scene<'_> {
-    fn trace(&mut self, requests: &[Request]) -> Result<Vec<Answer>, Stop> {
+    fn trace(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Stop> {
         self.session.check()?;
         let notify = &self.session.messages;
-        let answers = match &mut self.spectrum {
-            None => self.renderer.trace(requests, notify).map_err(failed)?,
+        match &mut self.spectrum {
+            None => self.renderer.trace(requests, notify, answers).map_err(failed)?,
             Some(spectral) => {
-                let (mut answers, spectra) = self.renderer.trace_spectra(requests, notify).map_err(failed)?;
+                let spectra;
+                (*answers, spectra) = self.renderer.trace_spectra(requests, notify).map_err(failed)?;
                 for (i, answer) in answers.iter_mut().enumerate() {
                     answer.value = spectral.colour(&spectra, i);
                 }
                 spectral.spectra = Some(spectra);
-                answers
             }
-        };
+        }
         self.session.meter.set_rays(self.renderer.rays());
-        Ok(answers)
+        Ok(())
     }
 
     fn trace_tree(&mut self, request: &Request, visit: Visit<'_>) -> Result<Answer, Stop> {

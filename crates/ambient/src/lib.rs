@@ -27,6 +27,7 @@ mod components;
 mod corral;
 mod derivatives;
 mod edges;
+mod entry;
 mod file;
 mod fill;
 mod finish;

@@ -2,10 +2,10 @@
 //! product of two hat functions (Schwarzhaupt, Jensen, Jarosz 2012 for the ellipse) and first-order extrapolation
 //! (Ward & Heckbert 1992, *Irradiance Gradients*).
 
+use crate::entry::Entry;
 use crate::light::Light;
 use crate::params::Limits;
 use crate::sampler::{Query, Sampler};
-use crate::store::{Derived, Place};
 use ambit_base::{DVec3, EPSILON, Vec3};
 
 /// Least extrapolation factor; a record that falls to it is not used.
@@ -15,7 +15,7 @@ pub(crate) const MAX_FACTOR: f32 = 20.0;
 /// Relative rounding of positions in ambient files (31-bit mantissas), allowed for in the tests across the plane.
 const ROUNDING: f64 = 1e-9;
 /// Queries this near to a corralled record, as a fraction of its reach, need no probe: the azimuth of so short a vector
-/// means nothing, and probing would reject a record at its own place.
+/// means nothing, and probing would reject a record at its own entry.
 const COINCIDENT: f32 = 1e-3;
 /// cos² of the angle to the normal at which the corral's probe passes over the query's surface (20° above its plane).
 const PROBE_COS2: f64 = 0.116_977_778_440_510_98;
@@ -90,26 +90,26 @@ impl Sum {
 }
 
 /// Adds one record to the sum, returning its weight; 0 if it does not qualify. Level and weight are tested by the caller.
-/// `light` gives what it answers at its own place.
+/// `light` gives what it answers at its own entry.
 #[inline]
 pub(crate) fn accumulate<S: Sampler>(
     asked: &Asked,
     angle: f32,
-    place: &Place,
-    (derived, light): (&Derived, impl FnOnce() -> Light),
+    entry: &Entry,
+    light: impl FnOnce() -> Light,
     sampler: &S,
     query: &Query<S::Origin>,
     sum: &mut Sum,
 ) -> f32 {
     let a2 = asked.accuracy * asked.accuracy;
-    let delta = asked.position - DVec3::from_array(place.position);
+    let delta = asked.position - DVec3::from_array(entry.position);
     let d = delta.as_vec3();
     let d2 = d.length_squared();
     // The ellipse lies within the sphere of the longer radius.
-    if d2 * place.inverse_radii[1] * place.inverse_radii[1] >= a2 {
+    if d2 * entry.inverse_radii[1] * entry.inverse_radii[1] >= a2 {
         return 0.0;
     }
-    let normal = Vec3::from_array(place.normal);
+    let normal = Vec3::from_array(entry.normal);
     // 2 − 2 cos of the angle between the normals, without cancellation.
     let tilt2 = (asked.normal - normal).length_squared();
     if tilt2 >= 2.0 || tilt2 >= angle * angle {
@@ -119,24 +119,24 @@ pub(crate) fn accumulate<S: Sampler>(
     if dn < -asked.behind {
         return 0.0;
     }
-    let u = Vec3::from_array(place.u);
+    let u = Vec3::from_array(entry.u);
     let v = normal.cross(u);
     let (du, dv) = (d.dot(u), d.dot(v));
-    let [i0, i1] = place.inverse_radii;
+    let [i0, i1] = entry.inverse_radii;
     let (en, eu, ev) = ((dn.abs() - asked.rounding).max(0.0) * i0, du * i0, dv * i1);
     let reach2 = en * en + eu * eu + ev * ev;
     if reach2 >= a2 {
         return 0.0;
     }
-    if place.corralled != 0 && d2 * i0 * i0 > a2 * COINCIDENT * COINCIDENT {
+    if entry.corralled && d2 * i0 * i0 > a2 * COINCIDENT * COINCIDENT {
         let k = sector(du, dv);
-        if derived.corral >> k & 1 != 0 && fenced(delta, place, sampler, query) {
+        if entry.corral >> k & 1 != 0 && fenced(delta, entry, sampler, query) {
             return 0.0;
         }
     }
     let turn = normal.cross(asked.shading);
-    let [gu, gv] = derived.gradient;
-    let [hu, hv] = derived.rotation;
+    let [gu, gv] = entry.gradient;
+    let [hu, hv] = entry.rotation;
     let factor = 1.0 + du * gu + dv * gv + turn.dot(u) * hu + turn.dot(v) * hv;
     if factor <= MIN_FACTOR {
         if d2 < asked.spare_reach * asked.spare_reach && sum.spare.is_none_or(|(nearest, _)| d2 < nearest) {
@@ -175,8 +175,8 @@ pub(crate) fn sector_of_angle(azimuth: f64) -> u32 {
 
 /// True if something stands between the query and the point above the record that appears 20° above the query's plane.
 #[cold]
-fn fenced<S: Sampler>(delta: DVec3, place: &Place, sampler: &S, query: &Query<S::Origin>) -> bool {
-    let normal = Vec3::from_array(place.normal).as_dvec3();
+fn fenced<S: Sampler>(delta: DVec3, entry: &Entry, sampler: &S, query: &Query<S::Origin>) -> bool {
+    let normal = Vec3::from_array(entry.normal).as_dvec3();
     let to_record = -delta;
     // D(t) = to_record + t·normal with (D·N)² = κ|D|².
     let (nn, dn, dm) = (normal.dot(query.normal), to_record.dot(query.normal), to_record.dot(normal));

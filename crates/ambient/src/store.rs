@@ -7,7 +7,8 @@
 //! Everything lies in flat arrays: the lists are runs of columns that are compared several records at a time; what
 //! passes is tested on the record itself, and its value read last.
 
-use crate::light::{APART, Light};
+use crate::entry::{Entry, light_of};
+use crate::light::Light;
 use crate::lookup::{Asked, Sum, accumulate};
 use crate::params::Limits;
 use crate::record::Record;
@@ -17,6 +18,9 @@ use ambit_base::{DVec3, Rgb, Vec3};
 
 /// Weight from which the records of smaller cells suffice and longer-reaching ones are not searched.
 const GOOD_ENOUGH: f32 = 0.05;
+/// Weight from which a hemisphere sample needs no further records. Records beyond it smooth what the eye sees; of deeper
+/// questions hundreds make one value, and a record or two each leave its error as it is, in rooms and boxes.
+pub(crate) const ENOUGH: f32 = 0.25;
 /// Depth at which insertion stops whatever the radius: below it cells differ by less than the rounding of coordinates.
 const MAX_DEPTH: u32 = 48;
 /// Relative margin between the two ways of finding a cell.
@@ -24,57 +28,22 @@ const MARGIN: f64 = 1e-9;
 /// Records nearer than this fraction of their reach, with equal level, weight and normal, are duplicates.
 const DUPLICATE: f64 = 1e-4;
 
-/// Where a record is valid: read by every comparison.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(crate) struct Place {
-    pub(crate) position: [f64; 3],
-    pub(crate) normal: [f32; 3],
-    pub(crate) u: [f32; 3],
-    pub(crate) inverse_radii: [f32; 2],
-    weight: f32,
-    level: u8,
-    pub(crate) corralled: u8,
-}
-
-/// What a record answers: read once it qualifies.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-pub(crate) struct Derived {
-    pub(crate) gradient: [f32; 2],
-    pub(crate) rotation: [f32; 2],
-    pub(crate) value: Rgb,
-    pub(crate) corral: u32,
-}
-
-impl Place {
-    fn of(record: &Record) -> Self {
-        Self {
-            position: record.position.to_array(),
-            normal: record.normal.as_vec3().to_array(),
-            u: record.u.as_vec3().to_array(),
-            inverse_radii: record.radii.map(f32::recip),
-            weight: record.weight,
-            level: record.level,
-            corralled: u8::from(record.corral != 0),
-        }
-    }
-}
-
-impl Derived {
-    fn of(record: &Record) -> Self {
-        Self { gradient: record.gradient, rotation: record.rotation, value: record.value, corral: record.corral }
-    }
-}
-
 #[derive(Clone, Copy, Debug, Default)]
 struct Node {
     /// Index of the first of eight children; 0: none (the root is nobody's child).
     children: u32,
-    /// The node's list: its first block, its records and how many blocks it has.
+    /// 0 at the root.
+    depth: u32,
+    /// The node's list: its first block and how many records it has.
     start: u32,
     len: u32,
-    capacity: u32,
+}
+
+impl Node {
+    /// How many blocks its list can grow to where it is.
+    fn capacity(&self) -> u32 {
+        if self.len == 0 { 0 } else { self.len.div_ceil(LANES as u32).next_power_of_two() }
+    }
 }
 
 /// The octree.
@@ -83,13 +52,11 @@ pub(crate) struct Store {
     corner: DVec3,
     edge: f64,
     nodes: Vec<Node>,
-    places: Vec<Place>,
-    derived: Vec<Derived>,
-    /// Values in further passes, so many a record.
-    further: Vec<Rgb>,
+    entries: Vec<Entry>,
+    /// What records answer in further passes, so many a record.
+    further: Vec<Light>,
     further_passes: usize,
-    /// What the last bounces brought, in each pass, so many a record; none where bounces are not told apart.
-    late: Vec<[Rgb; APART]>,
+    /// Bounces are told apart.
     apart: bool,
     /// The lists, each a run of blocks.
     blocks: Vec<Block>,
@@ -105,11 +72,9 @@ impl Store {
             corner,
             edge,
             nodes: vec![Node::default()],
-            places: Vec::new(),
-            derived: Vec::new(),
+            entries: Vec::new(),
             further: Vec::new(),
             further_passes: usize::from(passes.max(1)) - 1,
-            late: Vec::new(),
             apart,
             blocks: Vec::new(),
             vacant: Vec::new(),
@@ -129,22 +94,18 @@ impl Store {
             edge *= 0.5;
             depth += 1;
         }
-        let place = Place::of(record);
-        if self.is_duplicate(record, &place, depth, accuracy) {
+        let entry = Entry::of(record, self.apart);
+        if self.is_duplicate(record, &entry, depth, accuracy) {
             return false;
         }
-        let id = self.places.len() as u32;
-        self.places.push(place);
-        self.derived.push(Derived::of(record));
-        self.further.extend((0..self.further_passes).map(|k| record.of_pass(k as u8 + 1)));
-        if self.apart {
-            self.late.extend((0..=self.further_passes).map(|k| record.light(k as u8).late));
-        }
-        // Cells are found by halving in look-ups and by division here: the margin covers the difference.
+        let id = self.entries.len() as u32;
+        self.entries.push(entry);
+        self.further.extend((0..self.further_passes).map(|k| light_of(record, k as u8 + 1, self.apart)));
+        // The margin covers the rounding of what is added to the position.
         let margin = DVec3::splat(reach * (1.0 + MARGIN) + self.edge * MARGIN);
         let last = (1u64 << depth) - 1;
         let corner = self.corner;
-        let cell = |p: DVec3| ((p - corner) / edge).to_array().map(|c| (c.max(0.0) as u64).min(last));
+        let cell = |p: DVec3| self.finest(p).map(|c| c >> (MAX_DEPTH - depth));
         let (low, high) = (cell(record.position - margin), cell(record.position + margin));
         // Distance along one axis to the cells with one index; those at the border reach on without end.
         let off = |axis: usize, index: u64| {
@@ -160,7 +121,7 @@ impl Store {
                         continue;
                     }
                     let node = self.cell([x, y, z], depth);
-                    let corner = corner + DVec3::new(x as f64, y as f64, z as f64) * edge;
+                    let corner = self.corner_of([x, y, z], edge);
                     self.list(node, id, record.position - corner, edge, reach);
                 }
             }
@@ -170,44 +131,66 @@ impl Store {
 
     /// Lowers the radii of a record, the so-manieth inserted. It stays listed where it was: a little to search, nothing wrong.
     pub(crate) fn shrink(&mut self, id: u32, radii: [f32; 2]) {
-        self.places[id as usize].inverse_radii = radii.map(f32::recip);
+        self.entries[id as usize].inverse_radii = radii.map(f32::recip);
     }
 
-    /// What a record answers at its own place. Of questions of the eye's nobody wants to know what the last bounces brought.
+    /// What a record answers at its own place.
     #[inline]
-    fn light<O>(&self, derived: &Derived, id: usize, level: u8, query: &Query<O>) -> Light {
-        let value = match query.pass {
-            0 => derived.value,
-            pass => self.further[id * self.further_passes + usize::from(pass) - 1],
-        };
-        if query.level == 0 || !self.apart {
-            return value.into();
+    fn light<O>(&self, id: usize, query: &Query<O>) -> Light {
+        let entry = &self.entries[id];
+        match query.pass {
+            0 => entry.light(query.level),
+            pass => {
+                let light = self.further[id * self.further_passes + usize::from(pass) - 1];
+                light.deeper(query.level - entry.level)
+            }
         }
-        let late = self.late[id * (self.further_passes + 1) + usize::from(query.pass)];
-        Light { value, late }.deeper(query.level - level)
     }
 
     /// True if the cell at `depth` around a record lists one like it.
-    fn is_duplicate(&self, record: &Record, place: &Place, depth: u32, accuracy: f64) -> bool {
-        let (mut edge, mut corner, mut node) = (self.edge, self.corner, &self.nodes[0]);
-        for _ in 0..depth {
-            if node.children == 0 {
-                return false;
-            }
-            edge *= 0.5;
-            let middle = corner + edge;
-            let upper = record.position.cmpgt(middle);
-            corner = DVec3::select(upper, middle, corner);
-            node = &self.nodes[node.children as usize + upper.bitmask() as usize];
-        }
+    fn is_duplicate(&self, record: &Record, entry: &Entry, depth: u32, accuracy: f64) -> bool {
+        let finest = self.finest(record.position);
+        let Some(node) = self.around(finest).map(|n| &self.nodes[n]).find(|n| n.depth == depth) else { return false };
+        let (corner, edge) = self.cell_around(finest, depth);
         let close = DUPLICATE * accuracy * f64::from(record.radii[0]);
-        let probe = Probe::new(record.position - corner, edge, Vec3::from_array(place.normal), 0.0);
+        let probe = Probe::new(record.position - corner, edge, Vec3::from_array(entry.normal), 0.0);
         self.run_of(node).iter().flat_map(|block| block.candidates(&probe)).any(|id| {
-            let p = &self.places[id as usize];
-            p.level == place.level
-                && p.weight == place.weight
-                && p.normal == place.normal
-                && (DVec3::from_array(p.position) - record.position).length_squared() < close * close
+            let e = &self.entries[id as usize];
+            e.level == entry.level
+                && e.weight == entry.weight
+                && e.normal == entry.normal
+                && (DVec3::from_array(e.position) - record.position).length_squared() < close * close
+        })
+    }
+
+    /// The cell of the finest grid in which a place lies; outside the cube one at its border.
+    #[inline]
+    fn finest(&self, place: DVec3) -> [u64; 3] {
+        const CELLS: i64 = 1 << MAX_DEPTH;
+        let cells = (place - self.corner) * (CELLS as f64 / self.edge);
+        cells.to_array().map(|c| (c as i64).clamp(0, CELLS - 1) as u64)
+    }
+
+    /// Low corner of a cell, given by its coordinates in a grid of cells with such an edge.
+    #[inline]
+    fn corner_of(&self, cell: [u64; 3], edge: f64) -> DVec3 {
+        self.corner + DVec3::from_array(cell.map(|c| c as f64)) * edge
+    }
+
+    /// Low corner and edge of the cell at `depth` around one of the finest grid.
+    #[inline]
+    fn cell_around(&self, finest: [u64; 3], depth: u32) -> (DVec3, f64) {
+        let edge = self.edge / (1u64 << depth) as f64;
+        (self.corner_of(finest.map(|c| c >> (MAX_DEPTH - depth)), edge), edge)
+    }
+
+    /// The nodes around a cell of the finest grid, from the root down.
+    #[inline]
+    fn around(&self, finest: [u64; 3]) -> impl Iterator<Item = usize> {
+        std::iter::successors(Some(0), move |&node| {
+            let Node { children, depth, .. } = self.nodes[node];
+            let half = |axis: usize| (finest[axis] >> (MAX_DEPTH - 1 - depth) & 1) as usize;
+            (children != 0).then(|| children as usize + (half(0) | half(1) << 1 | half(2) << 2))
         })
     }
 
@@ -217,7 +200,8 @@ impl Store {
         for level in (0..depth).rev() {
             if self.nodes[node].children == 0 {
                 self.nodes[node].children = self.nodes.len() as u32;
-                self.nodes.resize(self.nodes.len() + 8, Node::default());
+                let child = Node { depth: self.nodes[node].depth + 1, ..Node::default() };
+                self.nodes.resize(self.nodes.len() + 8, child);
             }
             let half = |axis: usize| (at[axis] >> level & 1) as usize;
             node = self.nodes[node].children as usize + (half(0) | half(1) << 1 | half(2) << 2);
@@ -231,23 +215,18 @@ impl Store {
         &self.blocks[node.start as usize..][..(node.len as usize).div_ceil(LANES)]
     }
 
-    /// The records of a node's list, in order.
-    fn listed(&self, node: &Node) -> impl Iterator<Item = u32> {
-        let blocks = self.run_of(node);
-        (0..node.len as usize).map(|i| blocks[i / LANES].id(i % LANES))
-    }
-
     /// Enters a record in a node's list: level ascending, weight descending, a new record after its equals.
     fn list(&mut self, node: usize, id: u32, relative: DVec3, edge: f64, reach: f64) {
-        let place = self.places[id as usize];
-        let key = |p: &Place| (p.level, -p.weight);
-        let Node { start, len, capacity, .. } = self.nodes[node];
+        let entry = self.entries[id as usize];
+        let key = |e: &Entry| (e.level, -e.weight);
+        let Node { start, len, .. } = self.nodes[node];
+        let capacity = self.nodes[node].capacity();
         let (len, mut first) = (len as usize, start as usize);
         let (mut at, mut end) = (0, len);
         while at < end {
             let middle = at.midpoint(end);
             let other = self.blocks[first + middle / LANES].id(middle % LANES);
-            if key(&self.places[other as usize]) <= key(&place) {
+            if key(&self.entries[other as usize]) <= key(&entry) {
                 at = middle + 1;
             } else {
                 end = middle;
@@ -266,17 +245,16 @@ impl Store {
             }
             first = fresh as usize;
             self.nodes[node].start = fresh;
-            self.nodes[node].capacity = grown;
         }
         for i in (at..len).rev() {
             let mark = self.blocks[first + i / LANES].mark(i % LANES);
             self.blocks[first + (i + 1) / LANES].set((i + 1) % LANES, mark);
         }
-        let mark = Mark::new(relative, edge, Vec3::from_array(place.normal), reach, id);
+        let mark = Mark::new(relative, edge, Vec3::from_array(entry.normal), reach, id);
         self.blocks[first + at / LANES].set(at % LANES, mark);
         self.nodes[node].len += 1;
         for block in &mut self.blocks[first + at / LANES..=first + len / LANES] {
-            block.set_level(self.places[block.id(0) as usize].level);
+            block.set_level(self.entries[block.id(0) as usize].level);
         }
     }
 
@@ -294,16 +272,12 @@ impl Store {
     /// Sums the records that qualify for a query.
     pub(crate) fn lookup<S: Sampler>(&self, limits: &Limits, sampler: &S, query: &Query<S::Origin>) -> Sum {
         let mut sum = Sum::EMPTY;
-        let asked = Asked::new(query, limits);
-        // Positions outside the cube are filed in its border cells and searched for there.
-        let inside = query.position.clamp(self.corner, self.corner + self.edge);
-        let search = Search { store: self, asked, inside, limits, sampler, query };
-        search.node(0, self.corner, self.edge, &mut sum);
+        self.search(limits, query, |asked, angle, id| {
+            accumulate(asked, angle, &self.entries[id], || self.light(id, query), sampler, query, &mut sum)
+        });
         sum
     }
-}
 
-impl Store {
     /// The records that [`Store::lookup`] sums, one by one: weights and answers. For statistics, not for speed.
     pub(crate) fn contributions<S: Sampler>(
         &self,
@@ -311,98 +285,56 @@ impl Store {
         sampler: &S,
         query: &Query<S::Origin>,
     ) -> Vec<(f32, Rgb)> {
-        let asked = Asked::new(query, limits);
-        let inside = query.position.clamp(self.corner, self.corner + self.edge);
-        let (mut corner, mut edge, mut node) = (self.corner, self.edge, self.nodes[0]);
-        let mut path = vec![(node, edge)];
-        while node.children != 0 {
-            edge *= 0.5;
-            let middle = corner + edge;
-            let upper = inside.cmpgt(middle);
-            node = self.nodes[node.children as usize + upper.bitmask() as usize];
-            corner = DVec3::select(upper, middle, corner);
-            path.push((node, edge));
-        }
         let mut found = Vec::new();
+        self.search(limits, query, |asked, angle, id| {
+            let mut sum = Sum::EMPTY;
+            let own = accumulate(asked, angle, &self.entries[id], || self.light(id, query), sampler, query, &mut sum);
+            if own > 0.0 {
+                found.extend(sum.answer().map(|light| (own, light.value)));
+            }
+            own
+        });
+        found
+    }
+
+    /// Offers the records that may qualify for a query to `take`, which returns what they weigh: those of the smallest
+    /// cells first, until they have given enough.
+    #[inline]
+    fn search<O>(&self, limits: &Limits, query: &Query<O>, mut take: impl FnMut(&Asked, f32, usize) -> f32) {
+        let asked = Asked::new(query, limits);
+        let finest = self.finest(query.position);
+        let mut filled = [0u32; MAX_DEPTH as usize + 1];
+        let mut count = 0;
+        for node in self.around(finest).filter(|&n| self.nodes[n].len > 0) {
+            filled[count] = node as u32;
+            count += 1;
+        }
+        let enough = if query.level == 0 { f32::INFINITY } else { ENOUGH };
         let mut weight = 0.0;
-        for (node, edge) in path.into_iter().rev() {
+        for &node in filled[..count].iter().rev() {
+            let node = &self.nodes[node as usize];
+            let (corner, edge) = self.cell_around(finest, node.depth);
             if weight >= GOOD_ENOUGH && 0.5 * edge * limits.accuracy > limits.min_radius {
                 break;
             }
-            let Some(first) = self.listed(&node).next() else { continue };
-            let angle = asked.angle_for(self.places[first as usize].level);
-            for id in self.listed(&node) {
-                let place = &self.places[id as usize];
-                let deeper = place.level > asked.level;
-                if deeper || place.level == asked.level && place.weight < asked.least_weight {
+            let blocks = self.run_of(node);
+            let angle = asked.angle_for(blocks[0].level());
+            let probe = Probe::new(query.position - corner, edge, asked.normal, angle);
+            'list: for block in blocks {
+                if block.level() > asked.level {
                     break;
                 }
-                let mut sum = Sum::EMPTY;
-                let derived = &self.derived[id as usize];
-                let light = || self.light(derived, id as usize, place.level, query);
-                let own = accumulate(&asked, angle, place, (derived, light), sampler, query, &mut sum);
-                if own > 0.0 {
-                    weight += own;
-                    found.extend(sum.answer().map(|light| (own, light.value)));
+                for id in block.candidates(&probe) {
+                    let Entry { level, weight: own, .. } = self.entries[id as usize];
+                    if level > asked.level || level == asked.level && own < asked.least_weight {
+                        break 'list;
+                    }
+                    weight += take(&asked, angle, id as usize);
+                    if weight >= enough {
+                        return;
+                    }
                 }
             }
         }
-        found
-    }
-}
-
-struct Search<'a, S: Sampler> {
-    store: &'a Store,
-    asked: Asked,
-    inside: DVec3,
-    limits: &'a Limits,
-    sampler: &'a S,
-    query: &'a Query<S::Origin>,
-}
-
-impl<S: Sampler> Search<'_, S> {
-    /// The child around the point first, then the node's own list unless that gave enough; returns the weight found.
-    fn node(&self, index: usize, corner: DVec3, edge: f64, sum: &mut Sum) -> f32 {
-        let node = self.store.nodes[index];
-        let mut weight = 0.0;
-        if node.children != 0 {
-            let half = edge * 0.5;
-            let middle = corner + half;
-            let upper = self.inside.cmpgt(middle);
-            let child = node.children as usize + upper.bitmask() as usize;
-            let next = &self.store.nodes[child];
-            if next.children != 0 || next.len != 0 {
-                weight = self.node(child, DVec3::select(upper, middle, corner), half, sum);
-                if weight >= GOOD_ENOUGH && half * self.limits.accuracy > self.limits.min_radius {
-                    return weight;
-                }
-            }
-        }
-        if node.len == 0 { weight } else { weight + self.list(node, corner, edge, sum) }
-    }
-
-    fn list(&self, node: Node, corner: DVec3, edge: f64, sum: &mut Sum) -> f32 {
-        let store = self.store;
-        let blocks = store.run_of(&node);
-        let angle = self.asked.angle_for(blocks[0].level());
-        let probe = Probe::new(self.query.position - corner, edge, self.asked.normal, angle);
-        let mut weight = 0.0;
-        for block in blocks {
-            if block.level() > self.asked.level {
-                break;
-            }
-            for id in block.candidates(&probe) {
-                let id = id as usize;
-                let place = &store.places[id];
-                let deeper = place.level > self.asked.level;
-                if deeper || place.level == self.asked.level && place.weight < self.asked.least_weight {
-                    return weight;
-                }
-                let derived = &store.derived[id];
-                let light = || store.light(derived, id, place.level, self.query);
-                weight += accumulate(&self.asked, angle, place, (derived, light), self.sampler, self.query, sum);
-            }
-        }
-        weight
     }
 }

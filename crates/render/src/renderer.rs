@@ -23,15 +23,25 @@ use std::sync::{Mutex, PoisonError};
 
 /// Most requests that are shaded against one state of the cache.
 const BATCH: usize = 4096;
-/// Fewer requests than this are shaded on the calling thread.
+/// Fewer requests than this are shaded on the calling thread; more in as many tasks at least.
 const PARALLEL_FROM: usize = 8;
-/// Requests that are one task.
+/// Most requests of one task.
 const TOGETHER: usize = 16;
 
 /// `rtrace -I` starts its rays this far in front of the point of measurement, and declares them to hit a little
 /// behind that, scene units.
 const SENSOR_LIFT: f64 = 1.1e-4;
 const SENSOR_DISTANCE: f64 = 1e-5;
+
+/// What one task of a batch brings.
+#[derive(Default)]
+struct Part {
+    /// In each pass.
+    answers: Vec<Vec<Answer>>,
+    /// Diffuse questions that are open, and the numbers of the answers that wait for them.
+    misses: Vec<Miss<Origin>>,
+    owners: Vec<usize>,
+}
 
 /// A scene ready to be asked for light.
 #[derive(Debug)]
@@ -79,7 +89,8 @@ impl Renderer {
         requests: &[Request],
         notify: &dyn Notify,
     ) -> Result<(Vec<Answer>, Spectra), Error> {
-        let mut passes = self.trace_passes(requests, notify)?;
+        let mut passes = vec![Vec::new(); self.passes()];
+        self.trace_passes(requests, notify, &mut passes)?;
         let spectra = Spectra::gather(&self.options.spectrum, &passes);
         Ok((passes.swap_remove(0), spectra))
     }
@@ -89,54 +100,61 @@ impl Renderer {
         usize::from(self.cache.params().passes)
     }
 
-    /// Answers `requests`, in order. Warnings (of the ambient file, of function files) go to `notify`.
-    pub fn trace(&mut self, requests: &[Request], notify: &dyn Notify) -> Result<Vec<Answer>, Error> {
-        Ok(self.trace_passes(requests, notify)?.swap_remove(0))
+    /// Answers `requests`, in order. Warnings (of the ambient file, of function files) go to `notify`. Answers replace what
+    /// is in `answers`, so that one piece of memory serves many batches.
+    pub fn trace(&mut self, requests: &[Request], notify: &dyn Notify, answers: &mut Vec<Answer>) -> Result<(), Error> {
+        let mut passes = vec![Vec::new(); self.passes()];
+        passes[0] = std::mem::take(answers);
+        passes[0].clear();
+        let outcome = self.trace_passes(requests, notify, &mut passes);
+        *answers = passes.swap_remove(0);
+        outcome
     }
 
-    /// The answers of all passes.
-    fn trace_passes(&mut self, requests: &[Request], notify: &dyn Notify) -> Result<Vec<Vec<Answer>>, Error> {
-        let mut answers: Vec<_> = (0..self.passes()).map(|_| Vec::with_capacity(requests.len())).collect();
+    /// Adds the answers of all passes.
+    fn trace_passes(
+        &mut self,
+        requests: &[Request],
+        notify: &dyn Notify,
+        answers: &mut [Vec<Answer>],
+    ) -> Result<(), Error> {
+        for all in &mut *answers {
+            all.reserve(requests.len());
+        }
         for batch in requests.chunks(BATCH) {
-            let outcome = self.batch(batch, &mut answers);
+            let outcome = self.batch(batch, answers);
             self.complain(notify);
             outcome?;
             self.exchange(notify, false)?;
         }
-        Ok(answers)
+        Ok(())
     }
 
     fn batch(&mut self, requests: &[Request], answers: &mut [Vec<Answer>]) -> Result<(), Error> {
         let tracer = Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works };
         let cache = &self.cache;
-        let first = answers[0].len();
-        let one = |request: &Request| {
-            let mut misses = Vec::new();
+        let (first, passes) = (answers[0].len(), answers.len());
+        let piece = (requests.len() / PARALLEL_FROM).clamp(1, TOGETHER);
+        let parts = cache.steps().in_order(requests.len().div_ceil(piece), PARALLEL_FROM, 1, |k| {
+            let from = k * piece;
+            let requests = &requests[from..requests.len().min(from + piece)];
+            let mut part = Part { answers: vec![Vec::with_capacity(requests.len()); passes], ..Part::default() };
             let mut work = tracer.work();
-            let mut of_pass = |pass| {
-                let mut own = Vec::new();
-                let mut walk = Walk { tracer: &tracer, cache, work: &mut work, misses: &mut own, pass, observer: () };
-                let answer = walk.answer(request);
-                if misses.is_empty() {
-                    misses = own;
-                } else {
-                    misses.extend(own);
+            for (i, request) in requests.iter().enumerate() {
+                for (pass, answers) in part.answers.iter_mut().enumerate() {
+                    let (misses, pass) = (&mut part.misses, pass as u8);
+                    let mut walk = Walk { tracer: &tracer, cache, work: &mut work, misses, pass, observer: () };
+                    answers.push(walk.answer(request));
                 }
-                answer
-            };
-            let answer = of_pass(0);
-            let further: Vec<Answer> = (1..answers.len() as u8).map(of_pass).collect();
-            (answer, further, misses)
-        };
-        let shaded: Vec<(Answer, Vec<Answer>, Vec<Miss<Origin>>)> =
-            cache.steps().in_order(requests.len(), PARALLEL_FROM, TOGETHER, |i| one(&requests[i]));
-        let mut misses = Vec::new();
-        let mut owners = Vec::new();
-        for (i, (answer, further, own)) in shaded.into_iter().enumerate() {
-            answers[0].push(answer);
-            answers[1..].iter_mut().zip(further).for_each(|(all, answer)| all.push(answer));
-            owners.extend(std::iter::repeat_n(first + i, own.len()));
-            misses.extend(own);
+                part.owners.resize(part.misses.len(), first + from + i);
+            }
+            part
+        });
+        let (mut misses, mut owners) = (Vec::new(), Vec::new());
+        for part in parts {
+            answers.iter_mut().zip(&part.answers).for_each(|(all, own)| all.extend_from_slice(own));
+            misses.extend(part.misses);
+            owners.extend(part.owners);
         }
         if !misses.is_empty() && !self.scene.fault.is_set() {
             let values = self.cache.resolve(&tracer, &misses);

@@ -3,6 +3,7 @@
 use super::header::resolution_line;
 use super::output::PictureOutput;
 use super::recover::{self, Recovered};
+use super::shots::Shots;
 use super::watch::Watch;
 use crate::colour::Conversion;
 use crate::light::{Light, Scene};
@@ -10,8 +11,8 @@ use crate::session::{Session, Stop};
 use ambit_base::{Notify, Rgb};
 use ambit_cli::{Failure, PictureOptions};
 use ambit_file::{PixelSpace, Projection, View, fit_resolution};
-use ambit_render::picture::{Band, Camera, Lens, Order, Pixel, PixelRequest, Sampler, SmallSources};
-use ambit_render::{Answer, Request};
+use ambit_render::Answer;
+use ambit_render::picture::{Band, Camera, Lens, Order, Pixel, Sampler, SmallSources};
 
 /// Most pixels across: samples are numbered along a Hilbert curve by 32 bits.
 const MOST_ACROSS: u32 = 65535;
@@ -181,9 +182,11 @@ impl Picture<'_> {
         let watch = std::cell::RefCell::new(watch);
         let scene = std::cell::RefCell::new(scene);
         let mut traced = 0;
+        let mut shots = Shots::default();
         sampler.run(
             &mut |pixels| {
-                let answers = self.trace(&camera, pixels, &mut **scene.borrow_mut())?;
+                let light = &mut **scene.borrow_mut();
+                let answers = shots.trace(pixels, &|p| camera.ray(p), light, &|a| self.pixel(a))?;
                 traced += pixels.len();
                 if traced <= first {
                     watch.borrow_mut().step(part(share * traced as f64 / first as f64));
@@ -192,7 +195,8 @@ impl Picture<'_> {
             },
             &mut |mut band: Band| {
                 small.draw(&mut band, &mut |requests| -> Result<_, Stop> {
-                    let answers = scene.borrow_mut().trace(requests)?;
+                    let mut answers = Vec::new();
+                    scene.borrow_mut().trace(requests, &mut answers)?;
                     Ok(answers.iter().map(|a| self.pixel(a)).collect())
                 })?;
                 let left = f64::from(band.top + 1) - band.rows.len() as f64;
@@ -205,18 +209,6 @@ impl Picture<'_> {
                 Ok(())
             },
         )
-    }
-
-    /// Traces pixels; those outside the view are black and have no distance.
-    fn trace(&self, camera: &Camera, pixels: &[PixelRequest], light: &mut dyn Light) -> Result<Vec<Pixel>, Stop> {
-        let rays: Vec<Option<Request>> = pixels.iter().map(|&p| camera.ray(p)).collect();
-        let requests: Vec<Request> = rays.iter().flatten().copied().collect();
-        let mut answers = light.trace(&requests)?.into_iter();
-        let pixel = |ray: &Option<Request>| {
-            let answer = ray.as_ref().and_then(|_| answers.next());
-            answer.map_or_else(Pixel::default, |a| self.pixel(&a))
-        };
-        Ok(rays.iter().map(pixel).collect())
     }
 
     fn pixel(&self, answer: &Answer) -> Pixel {

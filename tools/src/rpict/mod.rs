@@ -6,6 +6,7 @@ mod output;
 mod pilot;
 mod recover;
 mod sequence;
+mod shots;
 mod watch;
 
 use crate::colour::Conversion;

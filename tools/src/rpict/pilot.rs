@@ -2,14 +2,14 @@
 
 use super::frame::{Frame, set_up};
 use super::recover;
+use super::shots::Shots;
 use crate::goal::{self, Goal, SIDE};
-use crate::light::{Light, Scene};
+use crate::light::Scene;
 use crate::session::{Session, Stop};
-use ambit_base::Rgb;
 use ambit_cli::{Failure, PictureOptions};
 use ambit_file::{PixelSpace, Projection};
+use ambit_render::Options;
 use ambit_render::picture::{Camera, Lens, Order, Pixel, PixelRequest, Sampler};
-use ambit_render::{Options, Request};
 use std::path::Path;
 
 /// Chooses the settings for the picture that the options ask for.
@@ -52,17 +52,14 @@ fn values(frame: &Frame, options: &PictureOptions, scene: &mut Scene<'_>) -> Res
     };
     let place = |k: u32, few: u32, many: u32| ((2 * k + 1) * many) / (2 * few);
     let mut values = Vec::new();
+    let mut shots = Shots::default();
     sampler.run(
         &mut |pixels: &[PixelRequest]| -> Result<Vec<Pixel>, Stop> {
-            let ray = |p: &PixelRequest| {
+            let ray = |p: PixelRequest| {
                 let (x, y) = (place(p.x, width, frame.width), place(p.y, height, frame.height));
                 camera.ray(PixelRequest { x, y, index: p.index })
             };
-            let rays: Vec<Option<Request>> = pixels.iter().map(ray).collect();
-            let requests: Vec<Request> = rays.iter().flatten().copied().collect();
-            let mut answers = scene.trace(&requests)?.into_iter();
-            let value = |ray: &Option<Request>| ray.and_then(|_| answers.next()).map_or(Rgb::ZERO, |a| a.value);
-            Ok(rays.iter().map(value).map(|colour| Pixel { colour, distance: 0.0 }).collect())
+            shots.trace(pixels, &ray, scene, &|answer| Pixel { colour: answer.value, distance: 0.0 })
         },
         &mut |band| {
             values.extend(band.rows.iter().flatten().map(|pixel| pixel.colour.to_array()));

@@ -37,9 +37,10 @@ fn selection(stream: &Stream, mut rays: RayReader<&[u8]>) -> Vec<Request> {
 fn values(requests: &[Request], scene: &mut Scene<'_>) -> Result<Vec<[f32; 3]>, Stop> {
     let mut batches = Batches::default();
     let mut values = Vec::with_capacity(requests.len());
+    let mut answers = Vec::new();
     while values.len() < requests.len() {
         let left = &requests[values.len()..];
-        let answers = scene.trace(&left[..batches.next(left.len())])?;
+        scene.trace(&left[..batches.next(left.len())], &mut answers)?;
         values.extend(answers.iter().map(|a| a.value.to_array()));
     }
     Ok(values)

@@ -65,6 +65,7 @@ impl Stream {
         let mut batches = Batches::default();
         let mut bytes = Vec::new();
         let mut requests: Vec<Request> = Vec::new();
+        let mut answers = Vec::new();
         let mut before = (DVec3::ZERO, DVec3::ZERO);
         // Records made in all, and rays since the last flush.
         let (mut made, mut unflushed) = (0u64, 0u64);
@@ -99,7 +100,7 @@ impl Stream {
                     before = (answer.origin, answer.direction);
                 }
             } else {
-                let answers = light.trace(&requests)?;
+                light.trace(&requests, &mut answers)?;
                 records.write_all(&mut bytes, &answers, light.spectra(), &|id| light.name(id));
                 if let Some(last) = answers.last() {
                     before = (last.origin, last.direction);
@@ -168,7 +169,7 @@ mod tests {
     struct Plain(Rc<RefCell<Vec<String>>>);
 
     impl Light for Plain {
-        fn trace(&mut self, requests: &[Request]) -> Result<Vec<Answer>, Stop> {
+        fn trace(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Stop> {
             if !requests.is_empty() {
                 self.0.borrow_mut().push(format!("trace {}", requests.len()));
             }
@@ -177,7 +178,8 @@ mod tests {
                 a.value = Rgb::splat(r.origin.x as f32);
                 a
             };
-            Ok(requests.iter().map(answer).collect())
+            *answers = requests.iter().map(answer).collect();
+            Ok(())
         }
 
         fn trace_tree(&mut self, _: &Request, _: Visit<'_>) -> Result<Answer, Stop> {
