@@ -5,6 +5,7 @@ use crate::components::Components;
 use crate::corral::{border, corral};
 use crate::derivatives::Derivatives;
 use crate::edges::Points;
+use crate::entry::smoothing;
 use crate::grid::Grid;
 use crate::hemisphere::Hemisphere;
 use crate::light::Light;
@@ -116,7 +117,8 @@ pub(crate) fn finish<O>(
         Grid::Polar { .. } => split(limits, weight, grid, cells, lit),
     };
     let rotation = turned(rotation, shape.turn);
-    let reach = shape.radii.map(|r| r * limits.accuracy);
+    let used = limits.accuracy * f64::from(smoothing(query.level));
+    let reach = shape.radii.map(|r| r * used);
     let frame = plan.frame();
     let (s, c) = shape.turn.sin_cos();
     let u = frame.u * c + frame.v * s;

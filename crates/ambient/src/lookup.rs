@@ -2,7 +2,7 @@
 //! product of two hat functions (Schwarzhaupt, Jensen, Jarosz 2012 for the ellipse) and first-order extrapolation
 //! (Ward & Heckbert 1992, *Irradiance Gradients*).
 
-use crate::entry::Entry;
+use crate::entry::{Entry, SMOOTHING};
 use crate::light::Light;
 use crate::params::Limits;
 use crate::sampler::{Query, Sampler};
@@ -15,7 +15,7 @@ pub(crate) const MAX_FACTOR: f32 = 20.0;
 /// Relative rounding of positions in ambient files (31-bit mantissas), allowed for in the tests across the plane.
 const ROUNDING: f64 = 1e-9;
 /// Queries this near to a corralled record, as a fraction of its reach, need no probe: the azimuth of so short a vector
-/// means nothing, and probing would reject a record at its own entry.
+/// means nothing, and probing would reject a record at its own place.
 const COINCIDENT: f32 = 1e-3;
 /// cos² of the angle to the normal at which the corral's probe passes over the query's surface (20° above its plane).
 const PROBE_COS2: f64 = 0.116_977_778_440_510_98;
@@ -32,6 +32,8 @@ pub(crate) struct Asked {
     angle: f32,
     pub(crate) opened: f32,
     accuracy: f32,
+    /// The same, for records that smooth.
+    widened: f32,
     /// How far below a record's plane a query may lie.
     behind: f32,
     rounding: f32,
@@ -51,6 +53,7 @@ impl Asked {
             angle: limits.max_angle as f32,
             opened: limits.opened_angle(query.weight) as f32,
             accuracy: limits.accuracy as f32,
+            widened: limits.accuracy as f32 * SMOOTHING,
             behind: (limits.min_radius * limits.accuracy + rounding) as f32,
             rounding: rounding as f32,
             spare_reach: (0.5 * limits.min_radius * limits.accuracy) as f32,
@@ -66,31 +69,35 @@ impl Asked {
 
 /// Weighted sum over the records that qualify.
 pub(crate) struct Sum {
+    /// Of the records whose reach the query is within.
     pub(crate) weight: f32,
+    /// Of all records that `light` is of.
+    pub(crate) smooth: f32,
     light: Light,
     spare: Option<(f32, Light)>,
 }
 
 impl Sum {
-    pub(crate) const EMPTY: Self = Self { weight: 0.0, light: Light::NONE, spare: None };
+    pub(crate) const EMPTY: Self = Self { weight: 0.0, smooth: 0.0, light: Light::NONE, spare: None };
 
     /// True if the weight makes an answer; a last resort does whatever it weighs.
     pub(crate) fn is_enough(&self, weight: f32) -> bool {
         self.weight >= weight || self.spare.is_some()
     }
 
-    /// The interpolated value, if anything qualified.
+    /// The interpolated value, if the query is within the reach of a record.
     pub(crate) fn answer(&self) -> Option<Light> {
-        if f64::from(self.weight) > EPSILON {
-            Some(self.light.over(self.weight))
-        } else {
-            self.spare.map(|(_, light)| light)
-        }
+        if f64::from(self.weight) > EPSILON { self.smoothed() } else { self.spare.map(|(_, light)| light) }
+    }
+
+    /// The mean of all that has been added.
+    pub(crate) fn smoothed(&self) -> Option<Light> {
+        (f64::from(self.smooth) > EPSILON).then(|| self.light.over(self.smooth))
     }
 }
 
-/// Adds one record to the sum, returning its weight; 0 if it does not qualify. Level and weight are tested by the caller.
-/// `light` gives what it answers at its own entry.
+/// Adds one record to the sum, returning its weight; 0 if it does not qualify, or only smooths. Level and weight are tested
+/// by the caller. `light` gives what it answers at its own place.
 #[inline]
 pub(crate) fn accumulate<S: Sampler>(
     asked: &Asked,
@@ -101,7 +108,8 @@ pub(crate) fn accumulate<S: Sampler>(
     query: &Query<S::Origin>,
     sum: &mut Sum,
 ) -> f32 {
-    let a2 = asked.accuracy * asked.accuracy;
+    let used = if entry.smooths { asked.widened } else { asked.accuracy };
+    let a2 = used * used;
     let delta = asked.position - DVec3::from_array(entry.position);
     let d = delta.as_vec3();
     let d2 = d.length_squared();
@@ -144,9 +152,12 @@ pub(crate) fn accumulate<S: Sampler>(
         }
         return 0.0;
     }
-    let weight = (1.0 - tilt2.sqrt() / angle) * (1.0 - reach2.sqrt() / asked.accuracy);
+    let (facing, reach) = (1.0 - tilt2.sqrt() / angle, reach2.sqrt());
+    let weight = facing * (1.0 - reach / asked.accuracy).max(0.0);
+    let smooth = facing * (1.0 - reach / used);
     sum.weight += weight;
-    sum.light += light() * (factor.min(MAX_FACTOR) * weight);
+    sum.smooth += smooth;
+    sum.light += light() * (factor.min(MAX_FACTOR) * smooth);
     weight
 }
 

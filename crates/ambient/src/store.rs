@@ -7,7 +7,7 @@
 //! Everything lies in flat arrays: the lists are runs of columns that are compared several records at a time; what
 //! passes is tested on the record itself, and its value read last.
 
-use crate::entry::{Entry, light_of};
+use crate::entry::{Entry, SMOOTHING, light_of};
 use crate::light::Light;
 use crate::lookup::{Asked, Sum, accumulate};
 use crate::params::Limits;
@@ -88,13 +88,13 @@ impl Store {
 
     /// Files a record in the cells of its reach. False if an equal one is there already.
     pub(crate) fn insert(&mut self, record: &Record, accuracy: f64) -> bool {
-        let reach = f64::from(record.radii[1]) * accuracy;
+        let entry = Entry::of(record, self.apart);
+        let reach = f64::from(record.radii[1]) * accuracy * if entry.smooths { f64::from(SMOOTHING) } else { 1.0 };
         let (mut edge, mut depth) = (self.edge, 0u32);
         while edge * 0.5 > reach && depth < MAX_DEPTH {
             edge *= 0.5;
             depth += 1;
         }
-        let entry = Entry::of(record, self.apart);
         if self.is_duplicate(record, &entry, depth, accuracy) {
             return false;
         }
@@ -272,13 +272,14 @@ impl Store {
     /// Sums the records that qualify for a query.
     pub(crate) fn lookup<S: Sampler>(&self, limits: &Limits, sampler: &S, query: &Query<S::Origin>) -> Sum {
         let mut sum = Sum::EMPTY;
-        self.search(limits, query, |asked, angle, id| {
+        let enough = if query.level == 0 { f32::INFINITY } else { ENOUGH };
+        self.search(limits, query, enough, |asked, angle, id| {
             accumulate(asked, angle, &self.entries[id], || self.light(id, query), sampler, query, &mut sum)
         });
         sum
     }
 
-    /// The records that [`Store::lookup`] sums, one by one: weights and answers. For statistics, not for speed.
+    /// All records that qualify for a query, one by one: weights and answers. For statistics, not for speed.
     pub(crate) fn contributions<S: Sampler>(
         &self,
         limits: &Limits,
@@ -286,21 +287,25 @@ impl Store {
         query: &Query<S::Origin>,
     ) -> Vec<(f32, Rgb)> {
         let mut found = Vec::new();
-        self.search(limits, query, |asked, angle, id| {
+        self.search(limits, query, f32::INFINITY, |asked, angle, id| {
             let mut sum = Sum::EMPTY;
             let own = accumulate(asked, angle, &self.entries[id], || self.light(id, query), sampler, query, &mut sum);
-            if own > 0.0 {
-                found.extend(sum.answer().map(|light| (own, light.value)));
-            }
+            found.extend(sum.smoothed().map(|light| (sum.smooth, light.value)));
             own
         });
         found
     }
 
     /// Offers the records that may qualify for a query to `take`, which returns what they weigh: those of the smallest
-    /// cells first, until they have given enough.
+    /// cells first, until they have given `enough` or longer-reaching ones would add little.
     #[inline]
-    fn search<O>(&self, limits: &Limits, query: &Query<O>, mut take: impl FnMut(&Asked, f32, usize) -> f32) {
+    fn search<O>(
+        &self,
+        limits: &Limits,
+        query: &Query<O>,
+        enough: f32,
+        mut take: impl FnMut(&Asked, f32, usize) -> f32,
+    ) {
         let asked = Asked::new(query, limits);
         let finest = self.finest(query.position);
         let mut filled = [0u32; MAX_DEPTH as usize + 1];
@@ -309,7 +314,6 @@ impl Store {
             filled[count] = node as u32;
             count += 1;
         }
-        let enough = if query.level == 0 { f32::INFINITY } else { ENOUGH };
         let mut weight = 0.0;
         for &node in filled[..count].iter().rev() {
             let node = &self.nodes[node as usize];
