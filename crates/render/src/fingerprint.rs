@@ -309,7 +309,8 @@ fn option_marks(options: &Options, edge: f64, relays: bool) -> Vec<Mark> {
         slight("ms", "-ms", g(medium.sampling)),
         // Ours; the files of older versions do not have them, and do not differ.
         decisive("unbounded", "--unbounded-bounces", switch(a.unbounded)),
-        decisive("cw", "-cw", options.spectrum.limits().map(g).join(",")),
+        // Values are converted, which a warning of its own tells.
+        slight("cw", "-cw", options.spectrum.limits().map(g).join(",")),
         slight("spacing", "--spacing", spacing(a.systems.spacing).to_owned()),
         slight("clamping", "--neighbor-clamping", switch(a.systems.neighbour_clamping)),
         slight("weights", "--actual-weights", switch(a.systems.actual_weights)),
