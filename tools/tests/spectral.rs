@@ -267,8 +267,39 @@ fn ambient_files_of_other_bins_are_converted_and_continued() {
             assert_eq!(now.len() - before.len(), 64 + bins);
             let value = &now[now.len() - bins - 1..];
             assert_eq!(value.last(), appended.last(), "{made} / {read}: {value:?}");
-            assert!(value.iter().zip(appended).all(|(a, b)| a.abs_diff(*b) <= 1), "{made} / {read}: {value:?} {appended:?}");
+            assert!(
+                value.iter().zip(appended).all(|(a, b)| a.abs_diff(*b) <= 1),
+                "{made} / {read}: {value:?} {appended:?}"
+            );
         }
+    }
+}
+
+/// Shares of light (`W`) are weighed as light is, but are not multiplied by lumens; `-co-` undoes only `-co+`.
+#[test]
+fn shares_of_light_have_no_unit() {
+    let bench = Bench::new(
+        "void metal mirror 0 0 5 .8 .5 .2 1 0\nmirror polygon floor 0 0 12 -5 -5 0 5 -5 0 5 5 0 -5 5 0\n\
+        void glow sky 0 0 4 1 1.5 2 0\nsky source sky 0 0 4 0 0 1 180\n",
+    );
+    let run =
+        |line: &str| numbers(&bench.rtrace(&format!("-h -w -ab 0 -lr 2 -otW {line}"), b"1 1 1 .3 .1 -1\n").stdout);
+    let chromaticities = "-pc .64 .33 .3 .6 .15 .06 .3127 .329";
+    // What rtrace 6.0a prints for the reflected ray, and for the ray itself.
+    for (line, wanted) in [
+        ("", &[0.8003503, 0.5008758, 0.2014014, 1.0, 1.0, 1.0][..]),
+        ("-pS", &[0.4204676, 1.0]),
+        ("-pS -co-", &[0.4204676, 1.0]),
+        ("-pS -co+ -co-", &[0.8003503, 0.5008758, 0.2014014, 1.0, 1.0, 1.0]),
+        (chromaticities, &[0.8490595, 0.5025808, 0.2097973, 1.000136, 0.9998877, 0.9999042]),
+        ("-cs 6", &[0.8592717, 0.4708879, 0.1495173, 0.9999119, 1.0001, 0.9993263]),
+        ("-cs 6 -pY", &[0.5530297, 1.0]),
+        ("-cs 6 -pM", &[0.2754805, 1.0]),
+        ("-cs 6 -pXYZ", &[0.6185207, 0.5530297, 0.206104, 0.9998779, 1.0, 0.9994354]),
+    ] {
+        let made = run(line);
+        assert_eq!(made.len(), wanted.len(), "{line}: {made:?}");
+        assert!(made.iter().zip(wanted).all(|(a, b)| (a - b).abs() <= 3e-5 * b), "{line}: {made:?}");
     }
 }
 

@@ -154,7 +154,7 @@ impl Job {
         }
         let written = out.write_all(&head).and_then(|()| if options.width > 0 { out.flush() } else { Ok(()) });
         written.map_err(|e| Stop::writing("write error", &e))?;
-        let records = RecordWriter::new(&self.spec.fields, &self.conversion, options.format);
+        let records = RecordWriter::new(&self.spec.fields, &self.conversion, options);
         let tree = self.spec.tree.as_ref().map(|t| TreeWriter::new(t, &self.conversion, options));
         let reader = RayReader::new(BufReader::with_capacity(1 << 16, input), options.input);
         let complete =

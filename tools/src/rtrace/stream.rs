@@ -214,7 +214,7 @@ mod tests {
         set(&mut options);
         let spec = OutputSpec::parse(&options.fields).unwrap();
         let converter = Converter::new(options.common.output, &options.rendering.options.spectrum);
-        let records = RecordWriter::new(&spec.fields, &converter, options.format);
+        let records = RecordWriter::new(&spec.fields, &converter, &options);
         let log = Rc::new(RefCell::new(Vec::new()));
         let mut out = Watched(Rc::clone(&log), Vec::new(), 0);
         let rays = RayReader::new(input.as_bytes(), InputFormat::Ascii);

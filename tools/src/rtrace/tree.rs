@@ -15,7 +15,7 @@ pub(crate) struct TreeWriter<'a> {
 impl<'a> TreeWriter<'a> {
     /// Writes what `spec` asks for of the rays that the options select.
     pub(crate) fn new(spec: &'a TreeSpec, conversion: &'a Converter, options: &'a RayOptions) -> Self {
-        let record = RecordWriter::new(&spec.fields, conversion, options.format);
+        let record = RecordWriter::new(&spec.fields, conversion, options);
         Self { record, shadows: spec.shadows, selection: &options.tree }
     }
 
