@@ -124,7 +124,9 @@ impl<'a> RecordWriter<'a> {
         };
         let made = &mut made[..count];
         if divisor != 1.0 {
-            made.iter_mut().for_each(|c| *c /= divisor);
+            for channel in &mut *made {
+                *channel /= divisor;
+            }
         }
         self.channels(out, made);
     }
