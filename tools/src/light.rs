@@ -4,14 +4,13 @@ use crate::session::{Session, Stop};
 use crate::spectral::{Channels, SpectralConversion};
 use ambit_base::{EPSILON, Rgb};
 use ambit_cli::{Class, Failure, Function, Output, Rendering};
-use ambit_file::{Header, general};
+use ambit_file::{Header, general, path_of};
 use ambit_render::picture::SourceOutline;
 use ambit_render::{
     Answer, Definition, Environment, OctreeSource, Options, Renderer, Request, SceneFingerprint, Spectra, Store, Visit,
     load,
 };
 use ambit_scene::{ErrorClass, ObjectId};
-use std::path::Path;
 
 /// What answers rays: the renderer, or a stand-in for tests.
 pub(crate) trait Light {
@@ -106,7 +105,7 @@ impl<'a> Scene<'a> {
             if rendering.options.ambient.accuracy > EPSILON {
                 let (header, owner) = (ambient_header(&self.session.program, rendering, name), owner());
                 let fingerprint = &scene.with(&rendering.options);
-                let store = Store { path: Path::new(file), header: &header, fingerprint, reuse, owner: &owner };
+                let store = Store { path: &path_of(file), header: &header, fingerprint, reuse, owner: &owner };
                 self.renderer.share(&store, messages).map_err(failed)?;
             } else {
                 let text = format!("zero ambient accuracy so \"{file}\" not opened");

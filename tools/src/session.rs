@@ -4,7 +4,9 @@ use ambit_cli::{
     About, Common, ConsoleMessages, Failure, Features, Outside, Process, Progress, Row, Scan, Signals, VERSION,
     attach_error_file, completions, defaults, long_help, man_page, scan,
 };
-use ambit_file::{Library, SearchPath, Zone, base_name, capture_lines, command_line};
+use ambit_file::{
+    Library, SearchPath, Zone, base_name, bytes_of, capture_lines, command_line, text_of, variable, word_of,
+};
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -110,11 +112,11 @@ pub(crate) struct Session {
     signals: Option<Signals>,
 }
 
-/// The name and the words of a command line; bytes that are no text are replaced.
+/// The name and the words of a command line; bytes that are no text are kept ([`ambit_file::text_of`]).
 pub(crate) fn split(mut arguments: impl Iterator<Item = OsString>) -> (String, Vec<String>) {
-    let text = |word: OsString| word.to_string_lossy().into_owned();
+    let text = |word: OsString| word_of(&word);
     let called = arguments.next().map(text).unwrap_or_default();
-    let program = String::from_utf8_lossy(base_name(called.as_bytes())).into_owned();
+    let program = text_of(base_name(&bytes_of(&called))).into_owned();
     (program, arguments.map(text).collect())
 }
 
@@ -139,7 +141,6 @@ pub(crate) fn on_deep_stack(program: impl FnOnce() -> ExitCode + Send + 'static)
 impl Session {
     /// A session that knows nothing but its name.
     pub(crate) fn new(program: String, reports: bool) -> Self {
-        let variable = |name| std::env::var(name).ok();
         let search = SearchPath::new(variable("RAYPATH").as_deref(), variable("HOME").as_deref(), Library::NONE);
         let meter = Meter { progress: Progress::start(&program), rays: AtomicU64::new(0), percent: AtomicU64::new(0) };
         let mut session = Self {
@@ -227,9 +228,9 @@ impl Session {
             return Err(Failure::unsupported("persist mode (-P, -PP) without an octree is").into());
         }
         if let Some(file) = &common.error_file {
-            let words = self.words.iter().chain(&self.octree);
-            let command = command_line(self.program.as_bytes(), words);
-            if attach_error_file(file, &String::from_utf8_lossy(&command)).is_err() {
+            let words = self.words.iter().chain(&self.octree).map(|w| bytes_of(w));
+            let command = command_line(&bytes_of(&self.program), words);
+            if attach_error_file(file, &command).is_err() {
                 // As Radiance: without a word.
                 return Err(Stop::Failure(Failure { class: ambit_cli::Class::System, text: String::new() }));
             }
@@ -258,12 +259,15 @@ impl Session {
 
     /// Header lines of this command: itself and the software.
     pub(crate) fn command_lines(&self) -> [Vec<u8>; 2] {
-        [command_line(self.program.as_bytes(), &self.words), format!("SOFTWARE= {VERSION}").into_bytes()]
+        [
+            command_line(&bytes_of(&self.program), self.words.iter().map(|w| bytes_of(w))),
+            format!("SOFTWARE= {VERSION}").into_bytes(),
+        ]
     }
 
     /// Header lines of the time.
     pub(crate) fn time_lines() -> [String; 2] {
-        capture_lines(SystemTime::now(), &Zone::from_variable(std::env::var("TZ").ok().as_deref()))
+        capture_lines(SystemTime::now(), &Zone::from_variable(variable("TZ").as_deref()))
     }
 
     /// Tells how it ended and returns the status.

@@ -168,9 +168,12 @@ impl Library {
         let constant = |entry: EntryId| self.names.entry(entry).definition.as_ref().map(|d| d.constant);
         match expr {
             Expr::Number(_) => true,
-            Expr::Channel(_) | Expr::IllegalChannel | Expr::Given(_) | Expr::Parameter(_) => false,
+            Expr::Channel(_)
+            | Expr::IllegalChannel
+            | Expr::Given(_)
+            | Expr::Parameter(_)
+            | Expr::Call(Callee::Parameter(_), _) => false,
             Expr::Name(entry) => constant(*entry) == Some(true),
-            Expr::Call(Callee::Parameter(_), _) => false,
             Expr::Call(Callee::Entry(entry), list) => {
                 let pure = || self.names.entry(*entry).builtin.is_some_and(crate::builtin::Builtin::is_pure);
                 constant(*entry).unwrap_or_else(pure) && list.iter().all(|argument| self.is_settled(argument))

@@ -10,7 +10,7 @@ use crate::components::Components;
 use crate::conversion::{Conversion, Sampling};
 use crate::record::Record;
 use ambit_base::Notify;
-use ambit_file::{FileLock, Header, LockMode, general, os_text};
+use ambit_file::{FileLock, Header, LockMode, bytes_of, general, name_of, os_text};
 use std::cell::Cell;
 use std::fs::File;
 use std::io::{ErrorKind, Seek, SeekFrom, Write};
@@ -57,7 +57,7 @@ impl AmbientFile {
     /// Warnings tell of files of other scenes (see [`Reuse`]), of read-only ones, damaged records (which are skipped),
     /// incomplete ones at the end (which are cut off) and missing locks.
     pub fn open(path: &Path, opening: &Opening<'_>, notify: &dyn Notify) -> Result<Opened, FileError> {
-        let name = path.to_string_lossy().into_owned();
+        let name = name_of(path).into_owned();
         Entry { path, name, opening, notify, beside: false, lockless: Cell::new(false) }.open()
     }
 }
@@ -185,7 +185,7 @@ impl Entry<'_> {
     /// What a new file begins with, or a segment of the file that has this header.
     fn head(&self, main: Option<&Header>) -> Vec<u8> {
         let mut header = Header::new();
-        header.extend(self.opening.header);
+        header.extend(self.opening.header.iter().map(|line| bytes_of(line)));
         match main {
             Some(main) => header.extend(super::fingerprint_lines(main)),
             None => header.extend(self.opening.fingerprint.map(super::Fingerprint::lines).unwrap_or_default()),
@@ -292,7 +292,7 @@ impl Entry<'_> {
             self.notify.warn(&unused);
             return Opened::NOTHING;
         };
-        let name = path.to_string_lossy().into_owned();
+        let name = name_of(&path).into_owned();
         if self.opening.reuse == Reuse::ReadOnly && !path.exists() {
             self.notify.warn(&unused);
             return Opened::NOTHING;

@@ -14,7 +14,7 @@ use crate::components::Components;
 use crate::conversion::Sampling;
 use crate::record::Record;
 use ambit_base::Notify;
-use ambit_file::Header;
+use ambit_file::{Header, name_of};
 use std::collections::HashSet;
 use std::ffi::OsString;
 use std::fs::File;
@@ -49,7 +49,7 @@ impl Segment {
 pub fn segments(path: &Path, main: &Contents, notify: &dyn Notify) -> Vec<Segment> {
     let mut found = Vec::new();
     for path in names(path) {
-        let shown = path.to_string_lossy().into_owned();
+        let shown = name_of(&path).into_owned();
         let contents = std::fs::read(&path)
             .map_err(|e| ambit_file::os_text(&e))
             .and_then(|bytes| scan_as(&bytes, &shown, |header| components(header, main)));

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use ambit_base::{Notify, Transform};
-use ambit_file::Header;
+use ambit_file::{Header, name_of, path_of};
 use ambit_octree::{Cube, Mesh};
 use ambit_scene::{Class, Kind, ObjectId, Scene, Shell};
 use std::collections::HashMap;
@@ -123,14 +123,14 @@ pub fn load(source: OctreeSource, environment: &Environment<'_>) -> Result<Loade
 fn fetch(source: OctreeSource, environment: &Environment<'_>) -> Result<(String, Vec<u8>), Error> {
     match source {
         OctreeSource::Bytes { name, bytes } => Ok((name, bytes)),
-        OctreeSource::File(name) => match std::fs::read(&name) {
+        OctreeSource::File(name) => match std::fs::read(path_of(&name)) {
             Ok(bytes) => Ok((name, bytes)),
             Err(e) => Err(Error::system(format!("cannot open octree file \"{name}\": {}", reason(&e)))),
         },
         OctreeSource::Command(command) => {
             let output = std::process::Command::new("/bin/sh")
                 .arg("-c")
-                .arg(&command)
+                .arg(path_of(&command))
                 .stdin(std::process::Stdio::inherit())
                 .stderr(std::process::Stdio::inherit())
                 .output()
@@ -178,7 +178,7 @@ fn place(
         .ok_or_else(|| Error::system(format!("cannot find {what} file \"{name}\": No such file or directory")))?;
     let bytes = std::fs::read(&path)
         .map_err(|e| Error::system(format!("cannot open {what} file \"{}\": {}", path.display(), reason(&e))))?;
-    let shown = path.to_string_lossy();
+    let shown = name_of(&path);
     let contents = if kind == Kind::Mesh {
         Contents::Mesh(Arc::new(ambit_octree::read_mesh(&bytes, &shown, scene, environment.notify)?))
     } else {
