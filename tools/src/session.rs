@@ -1,7 +1,7 @@
 //! What a rendering program does around its work: reading the command line, messages, signals, the exit status.
 
 use ambit_cli::{
-    About, Common, ConsoleMessages, Failure, Features, Outside, Process, Progress, Row, Scan, Signals, VERSION,
+    About, Common, ConsoleMessages, Failure, Features, Outside, Process, Progress, Row, Scan, Signals, VERSION, answer,
     attach_error_file, completions, defaults, long_help, man_page, scan,
 };
 use ambit_file::{
@@ -180,7 +180,7 @@ impl Session {
     {
         if words.first().is_some_and(|w| w == "-features") {
             let (text, missing) = tool.features.answer(&words[1..]);
-            print(&text)?;
+            answer(text.as_bytes());
             return match missing {
                 None => Ok(false),
                 Some(text) => {
@@ -208,14 +208,14 @@ impl Session {
                 (self.octree, self.words, self.flags) = (octree, words, flags);
                 return Ok(true);
             }
-            Scan::Version => print(&format!("{VERSION}\n"))?,
-            Scan::Defaults => print(&defaults(&tool.table, settings))?,
-            Scan::Help => print(&long_help(&tool.about, &tool.table))?,
-            Scan::Man => print(&String::from_utf8_lossy(&man_page(&tool.about, &tool.table)))?,
+            Scan::Version => answer(format!("{VERSION}\n").as_bytes()),
+            Scan::Defaults => answer(defaults(&tool.table, settings).as_bytes()),
+            Scan::Help => answer(long_help(&tool.about, &tool.table).as_bytes()),
+            Scan::Man => answer(&man_page(&tool.about, &tool.table)),
             Scan::Completions(shell) => {
                 let script = completions(&tool.about, &tool.table, &shell)
                     .ok_or_else(|| Failure::user(format!("no completions for shell '{shell}' (bash, zsh, fish)")))?;
-                print(&String::from_utf8_lossy(&script))?;
+                answer(&script);
             }
         }
         Ok(false)
@@ -294,10 +294,3 @@ impl Session {
 
 /// The system's number for "No such file or directory".
 const NO_SUCH_FILE: i32 = 2;
-
-fn print(text: &str) -> Result<(), Stop> {
-    io::stdout()
-        .write_all(text.as_bytes())
-        .and_then(|()| io::stdout().flush())
-        .map_err(|e| Stop::writing("write error", &e))
-}

@@ -6,7 +6,7 @@ use ambit_file::{Header, command_line, path_of};
 use ambit_octree::{Error, Limits, MESH_LIMITS, compile_mesh};
 use ambit_scene::{ErrorClass, Reader, Scene, Shell};
 use std::fs::File;
-use std::io::{BufWriter, Read, Write, stdin, stdout};
+use std::io::{BufWriter, Read, stdin};
 use std::process::ExitCode;
 
 const HELP: &str = "\
@@ -100,8 +100,7 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Failure> {
     let request = match parse(arguments)? {
         Asked::Mesh(request) => request,
         Asked::Text(text) => {
-            // Nobody reading the help is no failure.
-            let _ = stdout().write_all(text.as_bytes());
+            ambit_cli::answer(text.as_bytes());
             return Ok(());
         }
     };
@@ -129,7 +128,7 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Failure> {
             let file = File::create(path_of(file)).map_err(|e| Failure::system("cannot open output file", &e))?;
             mesh.write(&mut BufWriter::new(file), &header)
         }
-        None => mesh.write(&mut BufWriter::new(stdout().lock()), &header),
+        None => mesh.write(&mut BufWriter::new(ambit_cli::StandardOutput::ending()), &header),
     }
     .map_err(|e| failure(&e))
 }

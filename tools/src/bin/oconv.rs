@@ -1,11 +1,11 @@
 //! oconv: scene files to an octree on standard output.
 
 use ambit_base::{DVec3, Location, Notify};
-use ambit_cli::{Class, ConsoleMessages, Failure, VERSION};
+use ambit_cli::{Class, ConsoleMessages, Failure, StandardOutput, VERSION, answer};
 use ambit_file::{Header, Library, SearchPath, bytes_of, command_line, variable, word_of};
 use ambit_octree::{Cube, Error, Find, Limits, Objects, Prepared, Tree};
 use ambit_scene::{ErrorClass, Reader, Scene, Shell};
-use std::io::{BufWriter, Write, stdout};
+use std::io::BufWriter;
 use std::process::ExitCode;
 
 const HELP: &str = "\
@@ -149,8 +149,7 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Stop> {
     let request = match parse(arguments)? {
         Asked::Octree(request) => request,
         Asked::Text(text) => {
-            // Nobody reading the help is no failure.
-            let _ = stdout().write_all(text.as_bytes());
+            answer(text.as_bytes());
             return Ok(());
         }
     };
@@ -166,7 +165,7 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Stop> {
     } else {
         Objects::InFiles { names: &octree.names, count: octree.scene.len() }
     };
-    let mut out = BufWriter::with_capacity(BUFFER, stdout().lock());
+    let mut out = BufWriter::with_capacity(BUFFER, StandardOutput::ending());
     Ok(ambit_octree::write(&mut out, &header, &octree.cube, objects, &octree.tree)?)
 }
 

@@ -2,7 +2,7 @@
 
 use crate::session::Stop;
 use ambit_base::Rgb;
-use ambit_cli::Failure;
+use ambit_cli::{Failure, StandardOutput};
 use ambit_file::{encode_pixel, encode_scanline, path_of};
 use std::fs::{File, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -19,7 +19,7 @@ impl PictureOutput {
     /// Opens the outputs. A picture's file must be new; a file of distances is written over, from row `done` on.
     pub(crate) fn open(picture: Option<&str>, distances: Option<&str>, done: u32, width: u32) -> Result<Self, Failure> {
         let stream: Box<dyn Write> = match picture {
-            None => Box::new(io::stdout()),
+            None => Box::new(StandardOutput::new()),
             Some(name) => {
                 let file = OpenOptions::new().write(true).create_new(true).open(path_of(name));
                 Box::new(file.map_err(|e| Failure::system(format!("cannot open output file \"{name}\""), &e))?)

@@ -12,13 +12,14 @@ use crate::session::{Session, Stop, Tool, on_deep_stack, split};
 use crate::spectral::Converter;
 use ambit_base::Notify;
 use ambit_cli::{
-    About, COMMON_FEATURES, Failure, Features, Field, OutputFormat, OutputSpec, RAY_FEATURES, RayOptions, ray_table,
+    About, COMMON_FEATURES, Failure, Features, Field, OutputFormat, OutputSpec, RAY_FEATURES, RayOptions,
+    StandardOutput, ray_table,
 };
 use ambit_render::OctreeSource;
 use input::RayReader;
 use record::RecordWriter;
 use std::ffi::OsString;
-use std::io::{BufReader, Read, Write, stdin, stdout};
+use std::io::{BufReader, Read, Write, stdin};
 use std::process::ExitCode;
 use tree::TreeWriter;
 
@@ -142,7 +143,7 @@ impl Job {
         scene: &mut Scene<'_>,
         input: impl Read,
     ) -> Result<(), Stop> {
-        let mut out = stdout().lock();
+        let mut out = StandardOutput::new();
         let picture = (options.width > 0 && options.height > 0).then_some((options.width, options.height));
         let mut head = Vec::new();
         if options.header {
