@@ -18,6 +18,10 @@ pub(crate) trait Light {
     fn trace(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Stop>;
     /// Answers one ray, and shows all that follow from it as they finish.
     fn trace_tree(&mut self, request: &Request, visit: Visit<'_>) -> Result<Answer, Stop>;
+    /// An error if a signal has asked the work to stop.
+    fn check(&self) -> Result<(), Stop> {
+        Ok(())
+    }
     /// Spectra of the last batch, if the calculation is by wavelength.
     fn spectra(&self) -> Option<&Spectra> {
         None
@@ -146,7 +150,6 @@ impl<'a> Scene<'a> {
 
 impl Light for Scene<'_> {
     fn trace(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Stop> {
-        self.session.check()?;
         let notify = &self.session.messages;
         match &mut self.spectrum {
             None => self.renderer.trace(requests, notify, answers).map_err(failed)?,
@@ -164,7 +167,6 @@ impl Light for Scene<'_> {
     }
 
     fn trace_tree(&mut self, request: &Request, visit: Visit<'_>) -> Result<Answer, Stop> {
-        self.session.check()?;
         let (mut answer, spectra) = self.renderer.trace_tree(request, &self.session.messages, visit).map_err(failed)?;
         if let (Some(spectral), Some(spectra)) = (&mut self.spectrum, spectra) {
             answer.value = spectral.colour(&spectra, 0);
@@ -172,6 +174,10 @@ impl Light for Scene<'_> {
         }
         self.session.meter.set_rays(self.renderer.rays());
         Ok(answer)
+    }
+
+    fn check(&self) -> Result<(), Stop> {
+        self.session.check()
     }
 
     fn spectra(&self) -> Option<&Spectra> {

@@ -252,6 +252,11 @@ impl Session {
         }
     }
 
+    /// Set once a signal has asked the work to stop.
+    pub(crate) fn stop(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stop)
+    }
+
     /// An error if a signal has asked the work to stop.
     pub(crate) fn check(&self) -> Result<(), Stop> {
         if self.stop.load(Ordering::Acquire) { Err(Stop::Signal) } else { Ok(()) }

@@ -16,10 +16,12 @@ use ambit_cli::{
     StandardOutput, ray_table,
 };
 use ambit_render::OctreeSource;
-use input::RayReader;
+use input::{Patient, RayReader};
 use record::RecordWriter;
 use std::ffi::OsString;
+use std::fs::File;
 use std::io::{BufReader, Read, Write, stdin};
+use std::os::fd::AsFd;
 use std::process::ExitCode;
 use tree::TreeWriter;
 
@@ -65,7 +67,10 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     let goal = options.rendering.goal.filter(|_| job.spec.shades());
     let Some(error) = goal else {
         scene.begin(&octree, &options.rendering)?;
-        let result = job.run(session, &options, &mut scene, stdin().lock());
+        // Not by way of Rust's own buffer, of which a poll knows nothing.
+        let input =
+            stdin().as_fd().try_clone_to_owned().map_err(|e| Failure::system("cannot read standard input", &e))?;
+        let result = job.run(session, &options, &mut scene, Patient::new(File::from(input), session.stop()));
         // The ambient file is closed whatever happened; the first error counts.
         return result.and(scene.close());
     };
