@@ -99,10 +99,6 @@ impl Job {
         if !spectrum.shows_colour() && !options.common.output.bins() {
             session.messages.warn("spectral range incompatible with color output");
         }
-        if spec.tree.is_some() && options.rendering.options.ambient.unbounded {
-            let what = format!("ray trees (-o{}) with --unbounded-bounces (or --unbiased) are", options.fields);
-            return Err(Failure::unsupported(&what).into());
-        }
         if options.format == OutputFormat::Colour {
             if spec.tree.is_some() || !matches!(spec.fields[..], [Field::Value | Field::Mirrored | Field::Unmirrored]) {
                 return Err(Failure::user("color format only with -ov, -or, -ox").into());
