@@ -19,7 +19,7 @@ const FROM_SHARPENED: DMat3 = DMat3::from_cols(
 );
 
 /// Scotopic luminance of the channels: 412 lm/W times their scotopic efficiency.
-const SCOTOPIC: Rgb = Rgb::new(4.652171, 292.0746, 115.2732);
+const SCOTOPIC: Rgb = Rgb::new(4.652171, 292.07463, 115.2732);
 
 /// Melanopic luminance of the channels: 179 lm/W times their melanopic efficiency.
 const MELANOPIC: Rgb = Rgb::new(0.3277638, 107.4519, 71.22034);

@@ -4,14 +4,13 @@ use crate::session::{Session, Stop};
 use crate::spectral::{Channels, SpectralConversion};
 use ambit_base::{EPSILON, Rgb};
 use ambit_cli::{Class, Failure, Function, Output, Rendering};
-use ambit_file::{Header, general};
+use ambit_file::{Header, general, path_of};
 use ambit_render::picture::SourceOutline;
 use ambit_render::{
     Answer, Definition, Environment, OctreeSource, Options, Renderer, Request, SceneFingerprint, Spectra, Store, Visit,
     load,
 };
 use ambit_scene::{ErrorClass, ObjectId};
-use std::path::Path;
 
 /// What answers rays: the renderer, or a stand-in for tests.
 pub(crate) trait Light {
@@ -19,6 +18,10 @@ pub(crate) trait Light {
     fn trace(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Stop>;
     /// Answers one ray, and shows all that follow from it as they finish.
     fn trace_tree(&mut self, request: &Request, visit: Visit<'_>) -> Result<Answer, Stop>;
+    /// An error if a signal has asked the work to stop.
+    fn check(&self) -> Result<(), Stop> {
+        Ok(())
+    }
     /// Spectra of the last batch, if the calculation is by wavelength.
     fn spectra(&self) -> Option<&Spectra> {
         None
@@ -106,7 +109,7 @@ impl<'a> Scene<'a> {
             if rendering.options.ambient.accuracy > EPSILON {
                 let (header, owner) = (ambient_header(&self.session.program, rendering, name), owner());
                 let fingerprint = &scene.with(&rendering.options);
-                let store = Store { path: Path::new(file), header: &header, fingerprint, reuse, owner: &owner };
+                let store = Store { path: &path_of(file), header: &header, fingerprint, reuse, owner: &owner };
                 self.renderer.share(&store, messages).map_err(failed)?;
             } else {
                 let text = format!("zero ambient accuracy so \"{file}\" not opened");
@@ -147,7 +150,6 @@ impl<'a> Scene<'a> {
 
 impl Light for Scene<'_> {
     fn trace(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Stop> {
-        self.session.check()?;
         let notify = &self.session.messages;
         match &mut self.spectrum {
             None => self.renderer.trace(requests, notify, answers).map_err(failed)?,
@@ -165,7 +167,6 @@ impl Light for Scene<'_> {
     }
 
     fn trace_tree(&mut self, request: &Request, visit: Visit<'_>) -> Result<Answer, Stop> {
-        self.session.check()?;
         let (mut answer, spectra) = self.renderer.trace_tree(request, &self.session.messages, visit).map_err(failed)?;
         if let (Some(spectral), Some(spectra)) = (&mut self.spectrum, spectra) {
             answer.value = spectral.colour(&spectra, 0);
@@ -173,6 +174,10 @@ impl Light for Scene<'_> {
         }
         self.session.meter.set_rays(self.renderer.rays());
         Ok(answer)
+    }
+
+    fn check(&self) -> Result<(), Stop> {
+        self.session.check()
     }
 
     fn spectra(&self) -> Option<&Spectra> {

@@ -1,10 +1,12 @@
 //! What a rendering program does around its work: reading the command line, messages, signals, the exit status.
 
 use ambit_cli::{
-    About, Common, ConsoleMessages, Failure, Features, Outside, Process, Progress, Row, Scan, Signals, VERSION,
+    About, Common, ConsoleMessages, Failure, Features, Outside, Process, Progress, Row, Scan, Signals, VERSION, answer,
     attach_error_file, completions, defaults, long_help, man_page, scan,
 };
-use ambit_file::{Library, SearchPath, Zone, base_name, capture_lines, command_line};
+use ambit_file::{
+    Library, SearchPath, Zone, base_name, bytes_of, capture_lines, command_line, text_of, variable, word_of,
+};
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -110,11 +112,11 @@ pub(crate) struct Session {
     signals: Option<Signals>,
 }
 
-/// The name and the words of a command line; bytes that are no text are replaced.
+/// The name and the words of a command line; bytes that are no text are kept ([`ambit_file::text_of`]).
 pub(crate) fn split(mut arguments: impl Iterator<Item = OsString>) -> (String, Vec<String>) {
-    let text = |word: OsString| word.to_string_lossy().into_owned();
+    let text = |word: OsString| word_of(&word);
     let called = arguments.next().map(text).unwrap_or_default();
-    let program = String::from_utf8_lossy(base_name(called.as_bytes())).into_owned();
+    let program = text_of(base_name(&bytes_of(&called))).into_owned();
     (program, arguments.map(text).collect())
 }
 
@@ -139,7 +141,6 @@ pub(crate) fn on_deep_stack(program: impl FnOnce() -> ExitCode + Send + 'static)
 impl Session {
     /// A session that knows nothing but its name.
     pub(crate) fn new(program: String, reports: bool) -> Self {
-        let variable = |name| std::env::var(name).ok();
         let search = SearchPath::new(variable("RAYPATH").as_deref(), variable("HOME").as_deref(), Library::NONE);
         let meter = Meter { progress: Progress::start(&program), rays: AtomicU64::new(0), percent: AtomicU64::new(0) };
         let mut session = Self {
@@ -179,7 +180,7 @@ impl Session {
     {
         if words.first().is_some_and(|w| w == "-features") {
             let (text, missing) = tool.features.answer(&words[1..]);
-            print(&text)?;
+            answer(text.as_bytes());
             return match missing {
                 None => Ok(false),
                 Some(text) => {
@@ -207,14 +208,14 @@ impl Session {
                 (self.octree, self.words, self.flags) = (octree, words, flags);
                 return Ok(true);
             }
-            Scan::Version => print(&format!("{VERSION}\n"))?,
-            Scan::Defaults => print(&defaults(&tool.table, settings))?,
-            Scan::Help => print(&long_help(&tool.about, &tool.table))?,
-            Scan::Man => print(&String::from_utf8_lossy(&man_page(&tool.about, &tool.table)))?,
+            Scan::Version => answer(format!("{VERSION}\n").as_bytes()),
+            Scan::Defaults => answer(defaults(&tool.table, settings).as_bytes()),
+            Scan::Help => answer(long_help(&tool.about, &tool.table).as_bytes()),
+            Scan::Man => answer(&man_page(&tool.about, &tool.table)),
             Scan::Completions(shell) => {
                 let script = completions(&tool.about, &tool.table, &shell)
                     .ok_or_else(|| Failure::user(format!("no completions for shell '{shell}' (bash, zsh, fish)")))?;
-                print(&String::from_utf8_lossy(&script))?;
+                answer(&script);
             }
         }
         Ok(false)
@@ -227,9 +228,9 @@ impl Session {
             return Err(Failure::unsupported("persist mode (-P, -PP) without an octree is").into());
         }
         if let Some(file) = &common.error_file {
-            let words = self.words.iter().chain(&self.octree);
-            let command = command_line(self.program.as_bytes(), words);
-            if attach_error_file(file, &String::from_utf8_lossy(&command)).is_err() {
+            let words = self.words.iter().chain(&self.octree).map(|w| bytes_of(w));
+            let command = command_line(&bytes_of(&self.program), words);
+            if attach_error_file(file, &command).is_err() {
                 // As Radiance: without a word.
                 return Err(Stop::Failure(Failure { class: ambit_cli::Class::System, text: String::new() }));
             }
@@ -251,6 +252,11 @@ impl Session {
         }
     }
 
+    /// Set once a signal has asked the work to stop.
+    pub(crate) fn stop(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stop)
+    }
+
     /// An error if a signal has asked the work to stop.
     pub(crate) fn check(&self) -> Result<(), Stop> {
         if self.stop.load(Ordering::Acquire) { Err(Stop::Signal) } else { Ok(()) }
@@ -258,12 +264,15 @@ impl Session {
 
     /// Header lines of this command: itself and the software.
     pub(crate) fn command_lines(&self) -> [Vec<u8>; 2] {
-        [command_line(self.program.as_bytes(), &self.words), format!("SOFTWARE= {VERSION}").into_bytes()]
+        [
+            command_line(&bytes_of(&self.program), self.words.iter().map(|w| bytes_of(w))),
+            format!("SOFTWARE= {VERSION}").into_bytes(),
+        ]
     }
 
     /// Header lines of the time.
     pub(crate) fn time_lines() -> [String; 2] {
-        capture_lines(SystemTime::now(), &Zone::from_variable(std::env::var("TZ").ok().as_deref()))
+        capture_lines(SystemTime::now(), &Zone::from_variable(variable("TZ").as_deref()))
     }
 
     /// Tells how it ended and returns the status.
@@ -290,10 +299,3 @@ impl Session {
 
 /// The system's number for "No such file or directory".
 const NO_SUCH_FILE: i32 = 2;
-
-fn print(text: &str) -> Result<(), Stop> {
-    io::stdout()
-        .write_all(text.as_bytes())
-        .and_then(|()| io::stdout().flush())
-        .map_err(|e| Stop::writing("write error", &e))
-}

@@ -216,23 +216,97 @@ fn bounces_without_end_bring_all_light_in_every_bin() {
     }
 }
 
+/// A sky of a spectrum over a red floor, on which Radiance's answers are known.
+const SKY: &str = "void spectrum S 0 0 9 380 780 .1 .2 .3 .4 .5 .6 .7\nS glow sky 0 0 4 1 1 1 0\n\
+    sky source sky 0 0 4 0 0 1 180\nvoid plastic red 0 0 5 .7 .4 .2 0 0\n\
+    red polygon floor 0 0 12 -5 -5 0 5 -5 0 5 5 0 -5 5 0\n";
+
 #[test]
-fn ambient_files_of_other_bins_are_refused() {
-    let bench = Bench::new(ROOM);
-    let run = |line: &str| bench.rtrace(&format!("-h {COARSE} {line} -af x.amb"), &rays());
-    assert_eq!(run("-cs 9").status.code(), Some(0));
-    let before = std::fs::read(bench.0.path().join("x.amb")).unwrap();
-    for (line, problem) in [
-        ("", "NCOMP=9, of another -cs (expected NCOMP=3)"),
-        ("-cs 6", "NCOMP=9, of another -cs (expected NCOMP=6)"),
-        ("-cs 9 -cw 400 700", "WAVELENGTH_SPLITS= 780 588 480 380, of another -cw (expected 700 588 480 400)"),
-    ] {
-        let refused = run(line);
-        assert_eq!(refused.status.code(), Some(1), "{line}");
-        let text = String::from_utf8_lossy(&refused.stderr).into_owned();
-        assert!(text.contains("bad/incompatible ambient file") && text.contains(problem), "{text}");
+fn ambient_files_of_other_bins_are_converted_and_continued() {
+    let bench = Bench::new(SKY);
+    let run = |line: &str, rays: &[u8]| bench.rtrace(&format!("-h -I -u- -ab 1 -ad 64 -aa .1 -co+ {line}"), rays);
+    let (one, two) = (&b"1 1 0 0 0 1\n"[..], &b"1 1 0 0 0 1\n3 3 0 0 0 1\n"[..]);
+    // What rtrace 6.0a reads from a file of the first options with the second, and what it appends.
+    let cases: [(&str, &str, &[f64], &[u8]); 6] = [
+        ("-cs 9", "", &[1.509216, 1.073637, 0.5848372], &[243, 243, 243, 176, 176, 176, 93, 93, 93, 127]),
+        (
+            "-cs 9",
+            "-cs 6",
+            &[2.039172, 1.728285, 1.413308, 1.102421, 0.7874435, 0.4765567],
+            &[166, 153, 140, 115, 102, 89, 64, 51, 38, 128],
+        ),
+        ("-cw 400 700", "", &[1.487961, 1.08299, 0.5675729], &[212, 165, 93, 127]),
+        ("", "-cw 400 700", &[1.494097, 1.08299, 0.5737088], &[96, 199, 87, 127]),
+        (
+            "",
+            "-cs 9 -cw 380 1000",
+            &[0.0, 0.0, 0.0, 1.204917, 1.494097, 1.136037, 1.08299, 0.6065657, 0.5737088],
+            &[153, 102, 51, 128],
+        ),
+        ("-cs 6 -cw 400 700", "-cs 6 -cw 400 700", &[], &[]),
+    ];
+    for (k, (made, read, first, appended)) in cases.into_iter().enumerate() {
+        let file = format!("{k}.amb");
+        run(&format!("{made} -af {file}"), one);
+        let before = std::fs::read(bench.0.path().join(&file)).unwrap();
+        let refused = run(&format!("{read} -af {file} --reuse strict"), two);
+        assert_eq!(refused.status.code().unwrap(), i32::from(!first.is_empty()));
+        std::fs::write(bench.0.path().join(&file), &before).unwrap();
+        let used = run(&format!("{read} -af {file}"), two);
+        let text = String::from_utf8_lossy(&used.stderr).into_owned();
+        assert_eq!(used.status.code(), Some(0), "{text}");
+        assert_eq!(text.contains("different ambient file wavelength sampling"), !first.is_empty(), "{text}");
+        // Bytes of a mantissa each: the two programs' records need not round alike.
+        let answered = numbers(&used.stdout);
+        for (a, b) in answered.iter().zip(first) {
+            assert!((a - b).abs() <= 0.01 * b, "{made} / {read}: {answered:?} {first:?}");
+        }
+        let (now, bins) = (std::fs::read(bench.0.path().join(&file)).unwrap(), appended.len().max(1) - 1);
+        assert!(now.starts_with(&before));
+        if !first.is_empty() {
+            assert_eq!(now.len() - before.len(), 64 + bins);
+            let value = &now[now.len() - bins - 1..];
+            assert_eq!(value.last(), appended.last(), "{made} / {read}: {value:?}");
+            assert!(
+                value.iter().zip(appended).all(|(a, b)| a.abs_diff(*b) <= 1),
+                "{made} / {read}: {value:?} {appended:?}"
+            );
+        }
     }
-    assert!(std::fs::read(bench.0.path().join("x.amb")).unwrap() == before);
+}
+
+/// Shares of light (`W`) are weighed as light is, but are not multiplied by lumens; `-co-` undoes only `-co+`.
+#[test]
+fn shares_of_light_have_no_unit() {
+    let bench = Bench::new(
+        "void metal mirror 0 0 5 .8 .5 .2 1 0\nmirror polygon floor 0 0 12 -5 -5 0 5 -5 0 5 5 0 -5 5 0\n\
+        void glow sky 0 0 4 1 1.5 2 0\nsky source sky 0 0 4 0 0 1 180\n",
+    );
+    let run =
+        |line: &str| numbers(&bench.rtrace(&format!("-h -w -ab 0 -lr 2 -otW {line}"), b"1 1 1 .3 .1 -1\n").stdout);
+    let chromaticities = "-pc .64 .33 .3 .6 .15 .06 .3127 .329";
+    // What rtrace 6.0a prints for the reflected ray, and for the ray itself.
+    for (line, wanted) in [
+        ("", &[0.8003503, 0.5008758, 0.2014014, 1.0, 1.0, 1.0][..]),
+        ("-pS", &[0.4204676, 1.0]),
+        ("-pS -co-", &[0.4204676, 1.0]),
+        ("-pS -co+ -co-", &[0.8003503, 0.5008758, 0.2014014, 1.0, 1.0, 1.0]),
+        (chromaticities, &[0.8490595, 0.5025808, 0.2097973, 1.000136, 0.9998877, 0.9999042]),
+        ("-cs 6", &[0.8592717, 0.4708879, 0.1495173, 0.9999119, 1.0001, 0.9993263]),
+        ("-cs 6 -pY", &[0.5530297, 1.0]),
+        ("-cs 6 -pM", &[0.2754805, 1.0]),
+        ("-cs 6 -pXYZ", &[0.6185207, 0.5530297, 0.206104, 0.9998779, 1.0, 0.9994354]),
+    ] {
+        let made = run(line);
+        assert_eq!(made.len(), wanted.len(), "{line}: {made:?}");
+        assert!(made.iter().zip(wanted).all(|(a, b)| (a - b).abs() <= 3e-5 * b), "{line}: {made:?}");
+    }
+}
+
+#[test]
+fn programs_look_into_ambient_files_of_many_bins() {
+    let bench = Bench::new(ROOM);
+    assert_eq!(bench.rtrace(&format!("-h {COARSE} -cs 9 -af x.amb"), &rays()).status.code(), Some(0));
     // What is printed of a record is its colour.
     let listed = bench.run(env!("CARGO_BIN_EXE_lookamb"), "-h -d x.amb", b"").stdout;
     let rows: Vec<f64> = numbers(&listed);

@@ -113,6 +113,64 @@ fn hemispheres_are_followed_in_all_bins() {
     assert_eq!(rtrace(&octree, &format!("{options} -otV -n 3"), ray), answer);
 }
 
+/// Depth of a tree's lines and what their rays bring; checks that every ray of at least some depth brings what its children
+/// bring together, and the primary ray what it brings when nobody looks on.
+fn summed(octree: &Path, options: &str, least: usize) -> Vec<(usize, f64)> {
+    let ray = "1 1 1 0 0 -1";
+    let answer = rtrace(octree, &format!("{options} -oTV"), ray);
+    let lines: Vec<(usize, f64)> = answer
+        .lines()
+        .map(|line| {
+            (line.len() - line.trim_start_matches('\t').len(), line.split_whitespace().next().unwrap().parse().unwrap())
+        })
+        .collect();
+    // Sums of children that wait for their parents, by depth.
+    let mut sums: Vec<Option<f64>> = vec![None; 200];
+    for &(depth, value) in &lines {
+        if let Some(sum) = sums[depth + 1].take() {
+            assert!(
+                depth < least || (sum - value).abs() <= 1e-4 * value + 1e-9,
+                "{options}: {sum} of children at depth {depth}, {value}"
+            );
+        }
+        sums[depth] = Some(sums[depth].unwrap_or(0.0) + value);
+    }
+    let plain: f64 = rtrace(octree, &format!("{options} -ov"), ray).split_whitespace().next().unwrap().parse().unwrap();
+    assert!((plain - lines.last().unwrap().1).abs() <= 2e-6 * plain, "{options}: {plain} {:?}", lines.last());
+    lines
+}
+
+#[test]
+fn paths_without_end_are_branches_of_their_rays() {
+    let folder = tempfile::tempdir().unwrap();
+    let octree = octree(&folder, ROOM);
+    for options in ["-w -aa 0 -ad 25 -ab 1", "-w -aa .2 -ad 36 -as 0 -ab 2"] {
+        let deepest = |more: &str| {
+            let lines = summed(&octree, &format!("{options} {more}"), 0);
+            lines.iter().map(|line| line.0).max().unwrap()
+        };
+        let (ends, endless) = (deepest(""), deepest("--unbounded-bounces"));
+        assert!(ends <= 3 && endless >= 5, "{options}: {ends} {endless}");
+    }
+}
+
+#[test]
+fn trees_show_the_lamps_that_were_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let sphere =
+        |i: i32| format!(" lamp sphere s{i} 0 0 4 {} {} 2.5 .05", 0.6 * f64::from(i % 8) - 2.1, f64::from(i / 8) - 2.0);
+    let lamps = (0..40).map(sphere).collect::<Vec<_>>().concat();
+    let octree = octree(&folder, &ROOM.replace(" void plastic", &(lamps + " void plastic")));
+    let options = "-w -aa 0 -ad 36 -ab 1";
+    // Shadow rays of a hemisphere's sample are at depth 2. What the eye sees is lit by an estimate of what -dt spares, too.
+    let shadows = |more: &str| {
+        let lines = summed(&octree, &format!("{options} {more}"), 1);
+        (lines.iter().filter(|l| l.0 == 2).count(), lines.iter().filter(|l| l.0 == 1).count())
+    };
+    let ((few, rays), (all, _)) = (shadows(""), shadows("-dt 0"));
+    assert!(few <= 3 * rays && all >= 15 * rays, "{few} and {all} shadow rays of {rays}");
+}
+
 #[test]
 fn binary_lines_are_indented_too() {
     let folder = tempfile::tempdir().unwrap();

@@ -2,7 +2,7 @@
 
 use crate::channel::NUMBERED;
 use crate::emit;
-use crate::error::{Fault, Flag, Problem};
+use crate::error::{Fault, Flag, Problem, Warning};
 use crate::expr::{Callee, Expr};
 use crate::fold::{Chain, Failure, negative, power};
 use crate::library::{Host, Library};
@@ -54,7 +54,7 @@ impl Binder<'_> {
             }
             Node::Power(pair) => {
                 let (base, exponent) = (self.tree(&pair.0)?, self.tree(&pair.1)?);
-                power(base, exponent, fold).map_err(|failure| self.failed(failure, raw.left))
+                Ok(power(base, exponent, fold))
             }
         }
     }
@@ -99,7 +99,8 @@ impl Binder<'_> {
             (body, None) => {
                 let body = body.clone();
                 match self.evaluate(&body) {
-                    Ok((value, _)) => value,
+                    Ok(Constant::Value(value) | Constant::Wrong(value)) => value,
+                    Ok(Constant::Valueless) => return None,
                     Err(fault) => return Some(Err(fault)),
                 }
             }
@@ -128,8 +129,9 @@ impl Binder<'_> {
             return Ok(call);
         }
         match self.evaluate(&call) {
-            Ok((value, Flag::Clear)) => Ok(Expr::Number(value)),
-            Ok(_) => Err((left, Problem::BadConstant)),
+            Ok(Constant::Value(value)) => Ok(Expr::Number(value)),
+            Ok(Constant::Wrong(_)) => Err((left, Problem::BadConstant)),
+            Ok(Constant::Valueless) => Ok(call),
             Err(fault) => Err(constant_fault(fault, left)),
         }
     }
@@ -143,16 +145,55 @@ impl Binder<'_> {
         }
     }
 
-    /// The value of an expression without a ray; warnings go to the library's messages.
-    fn evaluate(&mut self, expr: &Expr) -> Result<(f64, Flag), Fault> {
+    /// The value of an expression without a ray; warnings go to the library's messages, if it is to be one.
+    fn evaluate(&mut self, expr: &Expr) -> Result<Constant, Fault> {
         let program = emit::expression(self.library, expr);
         let mut pass = self.library.scratch.constant_pass();
         let value = pass.eval(&program);
         let flag = pass.flag();
         let Library { scratch, messages, .. } = &mut *self.library;
-        messages.extend(scratch.drain_warnings().map(|warning| warning.to_string()));
-        Ok((value?, flag))
+        let warnings: Vec<Warning> = scratch.drain_warnings().collect();
+        if value.is_ok() && flag != Flag::Clear && warnings.iter().all(Warning::is_of_value) {
+            return Ok(Constant::Valueless);
+        }
+        messages.extend(warnings.iter().map(ToString::to_string));
+        Ok(if flag == Flag::Clear { Constant::Value(value?) } else { Constant::Wrong(value?) })
     }
+}
+
+impl Library {
+    /// True if nothing that an expression names can change: a number, or what has none for good.
+    pub(crate) fn is_settled(&self, expr: &Expr) -> bool {
+        let all = |operands: &[(bool, Expr)]| operands.iter().all(|(_, operand)| self.is_settled(operand));
+        let constant = |entry: EntryId| self.names.entry(entry).definition.as_ref().map(|d| d.constant);
+        match expr {
+            Expr::Number(_) => true,
+            Expr::Channel(_)
+            | Expr::IllegalChannel
+            | Expr::Given(_)
+            | Expr::Parameter(_)
+            | Expr::Call(Callee::Parameter(_), _) => false,
+            Expr::Name(entry) => constant(*entry) == Some(true),
+            Expr::Call(Callee::Entry(entry), list) => {
+                let pure = || self.names.entry(*entry).builtin.is_some_and(crate::builtin::Builtin::is_pure);
+                constant(*entry).unwrap_or_else(pure) && list.iter().all(|argument| self.is_settled(argument))
+            }
+            Expr::Negative(value) => self.is_settled(value),
+            Expr::Sum(operands) | Expr::Product(operands) => all(operands),
+            Expr::Power(pair) => self.is_settled(&pair.0) && self.is_settled(&pair.1),
+        }
+    }
+}
+
+/// What becomes of a constant expression.
+enum Constant {
+    /// A number.
+    Value(f64),
+    /// A number that stands for an operation that failed.
+    Wrong(f64),
+    /// No finite number, of a library function or a power: Radiance goes on with none, and it is left to rays, whether
+    /// they come by it and what they make of that.
+    Valueless,
 }
 
 fn constant_fault(fault: Fault, left: usize) -> Trouble {

@@ -1,6 +1,7 @@
 //! What can go wrong: in the text (a [`CompileError`]), fatally while evaluating (a [`Fault`]), or in the arithmetic of
 //! one evaluation (a [`Warning`], which substitutes 0 and leaves a [`Flag`]).
 
+use crate::builtin::Builtin;
 use std::fmt;
 use std::sync::Arc;
 
@@ -152,4 +153,15 @@ pub enum Warning {
     /// A library function has no finite value, or one of its arguments failed so.
     #[error("{0}(): range error")]
     Range(&'static str),
+}
+
+impl Warning {
+    /// True if the operation was carried out, and what came out is no finite number.
+    pub(crate) fn is_of_value(&self) -> bool {
+        match self {
+            Self::DivisionByZero => false,
+            Self::IllegalPower => true,
+            Self::Domain(name) | Self::Range(name) => *name != Builtin::Select.name(),
+        }
+    }
 }

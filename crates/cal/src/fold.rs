@@ -145,24 +145,23 @@ fn flatten(mut nested: Vec<(bool, Expr)>, wrap: fn(Vec<(bool, Expr)>) -> Expr) -
 }
 
 /// A power.
-pub(crate) fn power(base: Expr, exponent: Expr, fold: bool) -> Result<Expr, Failure> {
+pub(crate) fn power(base: Expr, exponent: Expr, fold: bool) -> Expr {
     if fold {
         match (&base, &exponent) {
             (Expr::Number(x), Expr::Number(y)) => {
                 let value = x.powf(*y);
-                return if value.is_finite() {
-                    Ok(Expr::Number(value))
-                } else {
-                    Err((Problem::BadConstant, Some(Warning::IllegalPower)))
-                };
+                if value.is_finite() {
+                    return Expr::Number(value);
+                }
+                // Left to rays, which may never come by it.
             }
-            (Expr::Number(0.0), _) => return Ok(base),
-            (Expr::Number(1.0), _) | (_, Expr::Number(0.0)) => return Ok(Expr::Number(1.0)),
-            (_, Expr::Number(1.0)) => return Ok(base),
+            (Expr::Number(0.0), _) => return base,
+            (Expr::Number(1.0), _) | (_, Expr::Number(0.0)) => return Expr::Number(1.0),
+            (_, Expr::Number(1.0)) => return base,
             _ => {}
         }
     }
-    Ok(Expr::Power(Box::new((base, exponent))))
+    Expr::Power(Box::new((base, exponent)))
 }
 
 /// A change of sign.

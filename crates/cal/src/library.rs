@@ -198,7 +198,7 @@ impl Library {
 
     /// Makes a definition the current one of its name, with the messages that go with it.
     fn redefine(&mut self, name: &str, definition: Definition, context: &Context) {
-        let before = self.names.count();
+        let (before, settled) = (self.names.count(), self.is_settled(&definition.body));
         let id = self.names.defined(name, context, self.host);
         let entry = self.names.entry_mut(id);
         let name = &entry.name;
@@ -214,7 +214,7 @@ impl Library {
             }
             _ => {}
         }
-        if definition.constant && definition.parameters.is_none() && !matches!(definition.body, Expr::Number(_)) {
+        if definition.constant && definition.parameters.is_none() && !settled {
             self.messages.push(format!("{name}: assigned non-constant value"));
         }
         entry.definition = Some(definition);

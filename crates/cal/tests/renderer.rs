@@ -246,6 +246,25 @@ fn bad_files_and_arguments_are_shown_with_place_line_and_caret() {
     assert_eq!(compile("Px/0"), "colorfunc \"pat\":\nPx/0\n   ^ divide by zero constant");
 }
 
+/// Radiance goes on with a value that is none; only a ray that comes by it notices.
+#[test]
+fn constants_without_a_value_are_left_to_rays() {
+    for text in
+        ["sqrt(-1)", "log(0)", "asin(2)", "exp(1000)", "0^(-1)", "(-1)^.5", "floor(sqrt(-1))", "root(-1)", "c", "-d"]
+    {
+        let mut library = Library::renderer().unwrap();
+        let file = format!("c:log(-2);d:c*2;root(x):sqrt(x);f={text};g=if(1,2,{text});h:{text};i=h;");
+        library.load_file("v.cal", "./v.cal", file.as_bytes()).unwrap();
+        assert_eq!(library.drain_messages().count(), 0, "{text}");
+        let (numbers, flag, warnings) = values(&mut library, "v.cal", &["g"], &[]).unwrap();
+        assert_eq!((&numbers[..], flag, warnings.len()), (&[2.0][..], Flag::Clear, 0), "{text}");
+        for bad in ["f", "i"] {
+            let (_, flag, warnings) = values(&mut library, "v.cal", &[bad], &[]).unwrap();
+            assert!(flag != Flag::Clear && !warnings.is_empty(), "{text}: {flag:?} {warnings:?}");
+        }
+    }
+}
+
 #[test]
 fn constants_that_need_a_ray_are_refused_where_used() {
     let mut library = Library::renderer().unwrap();

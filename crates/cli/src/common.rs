@@ -93,15 +93,23 @@ impl Output {
         Ok(Self::Primaries(v))
     }
 
-    /// The output of `-co+` or `-co-` after this one.
+    /// The output of `-co+` or `-co-` after this one. Where no bins were to be written, `-co-` changes nothing.
     pub(crate) fn calculated(self, bins: bool) -> Self {
-        let factor = match self {
+        match self {
+            Self::Calculated { .. } => Self::Calculated { bins, factor: self.efficacy() },
+            _ if bins => Self::Calculated { bins, factor: self.efficacy() },
+            _ => self,
+        }
+    }
+
+    /// Lumens in a watt, where the output is in lumens; what is no light (shares of it) is not multiplied by that.
+    pub fn efficacy(self) -> f32 {
+        match self {
             Self::Xyz | Self::Photopic | Self::Melanopic => LUMINOUS_EFFICACY,
             Self::Scotopic => SCOTOPIC_EFFICACY,
             Self::Rgb | Self::Primaries(_) | Self::Average => 1.0,
             Self::Calculated { factor, .. } => factor,
-        };
-        Self::Calculated { bins, factor }
+        }
     }
 
     /// True if all bins of the spectrum are written.

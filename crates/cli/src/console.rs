@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use ambit_base::Notify;
+use ambit_file::{bytes_of, path_of};
 use std::fs::OpenOptions;
 use std::io::{self, Write};
 
@@ -17,7 +18,8 @@ pub struct ConsoleMessages {
 impl ConsoleMessages {
     /// Prints one message.
     pub fn print(&self, text: impl std::fmt::Display) {
-        let _ = writeln!(io::stderr(), "{}: {text}", self.program);
+        let line = format!("{}: {text}\n", self.program);
+        let _ = io::stderr().write_all(&bytes_of(&line));
     }
 
     /// Prints why the program stops.
@@ -39,8 +41,9 @@ impl Notify for ConsoleMessages {
 ///
 /// # Errors
 /// If the file can not be opened or written.
-pub fn attach_error_file(file: &str, command: &str) -> io::Result<()> {
-    let mut log = OpenOptions::new().append(true).create(true).open(file)?;
-    writeln!(log, "**************\n*** PID {:5}: {command}\n", std::process::id())?;
+pub fn attach_error_file(file: &str, command: &[u8]) -> io::Result<()> {
+    let mut log = OpenOptions::new().append(true).create(true).open(path_of(file))?;
+    let head = format!("**************\n*** PID {:5}: ", std::process::id());
+    log.write_all(&[head.as_bytes(), command, b"\n\n"].concat())?;
     Ok(rustix::stdio::dup2_stderr(&log)?)
 }

@@ -22,6 +22,7 @@ mod scan;
 mod signals;
 mod spec;
 mod spectrum;
+mod standard;
 mod systems;
 mod table;
 mod viewing;
@@ -41,6 +42,7 @@ pub use scan::{Arguments, Scan, scan};
 pub use signals::{Caught, Signals};
 pub use spec::{Field, OutputSpec, TreeSpec};
 pub use spectrum::Spectrum;
+pub use standard::{StandardOutput, answer};
 pub use table::{Label, Place, Row};
 
 /// What `-version` prints and what headers record as the software: the version of Radiance whose files and options

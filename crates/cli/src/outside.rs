@@ -1,7 +1,7 @@
 //! What a command line may ask of the world while it is read: variables, files, lists on the search path.
 
 use crate::failure::Failure;
-use ambit_file::{View, read_words, split_words};
+use ambit_file::{View, read_words, split_words, text_of};
 use std::io;
 
 /// The world as the reader of options sees it.
@@ -26,18 +26,18 @@ pub struct Process<'a> {
 
 impl Outside for Process<'_> {
     fn variable(&self, name: &str) -> Option<String> {
-        std::env::var(name).ok()
+        ambit_file::variable(name)
     }
 
     fn words(&self, file: &str) -> Result<Vec<String>, Failure> {
         let words = read_words(file)?;
-        Ok(words.into_iter().map(|w| String::from_utf8_lossy(&w).into_owned()).collect())
+        Ok(words.into_iter().map(|w| text_of(&w).into_owned()).collect())
     }
 
     fn list(&self, file: &str, what: &str) -> Result<Vec<String>, Failure> {
         let bytes =
             (self.read)(file).map_err(|e| Failure::system(format!("cannot open {what} file \"{file}\""), &e))?;
-        Ok(split_words(&bytes).map(|w| String::from_utf8_lossy(w).into_owned()).collect())
+        Ok(split_words(&bytes).map(|w| text_of(w).into_owned()).collect())
     }
 
     fn view(&self, view: &mut View, file: &str) -> Result<(), Failure> {

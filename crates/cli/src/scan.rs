@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use crate::outside::Outside;
 use crate::table::{Place, Row};
-use ambit_file::{WORD_LIMIT, integer, real, split_words};
+use ambit_file::{WORD_LIMIT, bytes_of, integer, real, split_words, text_of};
 use std::collections::VecDeque;
 
 /// The words of a command line that have not been read yet, and those that have.
@@ -85,7 +85,7 @@ impl Arguments<'_> {
                 // What Radiance says of an unset variable, stale error text and all.
                 let unset = || Failure::system(format!("cannot expand '{word}'"), &missing());
                 let value = self.outside.variable(name).ok_or_else(unset)?;
-                split_words(value.as_bytes()).map(|w| String::from_utf8_lossy(w).into_owned()).collect()
+                split_words(&bytes_of(&value)).map(|w| text_of(w).into_owned()).collect()
             } else {
                 self.read.push(word.clone());
                 return Ok(Some(word));

@@ -5,6 +5,7 @@
 //! are not searched.
 
 use crate::error::Error;
+use crate::native::path_of;
 use rustix::fs::{Access, access};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -52,7 +53,7 @@ impl SearchPath {
     pub fn new(raypath: Option<&str>, home: Option<&str>, library: Library) -> Self {
         let path = raypath.unwrap_or(DEFAULT_PATH);
         let path = path.strip_suffix(':').unwrap_or(path);
-        Self { directories: path.split(':').map(PathBuf::from).collect(), home: home.map(PathBuf::from), library }
+        Self { directories: path.split(':').map(path_of).collect(), home: home.map(path_of), library }
     }
 
     /// The directories in order; an empty one is the working directory.
@@ -69,7 +70,7 @@ impl SearchPath {
         if name.is_empty() {
             return None;
         }
-        let on_disk = self.directories.iter().map(|d| d.join(name)).find(|path| readable(path));
+        let on_disk = self.directories.iter().map(|d| d.join(path_of(name))).find(|path| readable(path));
         on_disk.map(Found::Path).or_else(|| (self.library.0)(name).map(Found::Embedded))
     }
 
@@ -93,8 +94,8 @@ impl SearchPath {
     /// The path of a name that is not searched for.
     fn direct(&self, name: &str) -> Option<PathBuf> {
         match name.as_bytes().first()? {
-            b'/' | b'.' => Some(PathBuf::from(name)),
-            b'~' => Some(self.home_path(&name[1..]).unwrap_or_else(|| PathBuf::from(name))),
+            b'/' | b'.' => Some(path_of(name)),
+            b'~' => Some(self.home_path(&name[1..]).unwrap_or_else(|| path_of(name))),
             _ => None,
         }
     }
@@ -103,7 +104,7 @@ impl SearchPath {
     fn home_path(&self, rest: &str) -> Option<PathBuf> {
         let (user, below) = rest.split_once('/').unwrap_or((rest, ""));
         let home = if user.is_empty() { self.home.clone()? } else { home_of(user)? };
-        Some(home.join(below))
+        Some(home.join(path_of(below)))
     }
 }
 

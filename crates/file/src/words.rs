@@ -1,6 +1,7 @@
 //! Words of command lines: what numbers look like, and the words that `@file` and `$VAR` stand for.
 
 use crate::error::Error;
+use crate::native::path_of;
 use std::fs::File;
 use std::io::{self, Read};
 
@@ -31,7 +32,7 @@ pub fn split_words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
 pub fn read_words(file: &str) -> Result<Vec<Vec<u8>>, Error> {
     let failed = |e: io::Error| Error::Expand { word: format!("@{file}"), source: e };
     let mut text = Vec::new();
-    File::open(file).map_err(failed)?.take(FILE_LIMIT).read_to_end(&mut text).map_err(failed)?;
+    File::open(path_of(file)).map_err(failed)?.take(FILE_LIMIT).read_to_end(&mut text).map_err(failed)?;
     Ok(split_words(&text).map(<[u8]>::to_vec).collect())
 }
 

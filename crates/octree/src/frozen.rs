@@ -4,7 +4,7 @@
 use crate::Error;
 use crate::error::Problem;
 use ambit_base::Notify;
-use ambit_file::{Cursor, PortableWrite};
+use ambit_file::{Cursor, PortableWrite, text_of};
 use ambit_scene::{KINDS, Kind, NewObject, ObjectId, Scene, VOID};
 use std::io::{self, Write};
 use std::ops::Range;
@@ -33,7 +33,7 @@ pub(crate) fn read(
         }
         let kind = Kind::from_name(word);
         if kind.is_none() {
-            notify.warn(&format!("unknown object type \"{}\"", String::from_utf8_lossy(word)));
+            notify.warn(&format!("unknown object type \"{}\"", text_of(word)));
         }
         kinds.push(kind);
     }
@@ -54,7 +54,7 @@ pub(crate) fn read(
             .ok_or_else(|| Error::UnknownType { name: name.to_owned() })?;
         let modifier = input.int(width).ok_or_else(ends)?;
         let identifier = input.string().ok_or_else(ends)?;
-        let primitive = || format!("{} \"{}\"", kind.name(), String::from_utf8_lossy(identifier));
+        let primitive = || format!("{} \"{}\"", kind.name(), text_of(identifier));
         let count = |input: &mut Cursor<'_>| {
             let n = input.int(2).ok_or_else(ends)?;
             usize::try_from(n).map_err(|_| Problem::NegativeCount { primitive: primitive() }.of(name))

@@ -2,6 +2,7 @@
 
 use crate::Error;
 use ambit_base::Notify;
+use ambit_file::{bytes_of, path_of};
 use ambit_scene::Runner;
 
 /// The bytes of a file, or of what a command prints if the name begins with `!`. A command that fails costs a warning.
@@ -9,12 +10,12 @@ use ambit_scene::Runner;
 pub fn open(name: &str, runner: &mut dyn Runner, notify: &dyn Notify) -> Result<Vec<u8>, Error> {
     let failed = |action| move |source| Error::Open { action, name: name.to_owned(), source };
     let Some(command) = name.strip_prefix('!') else {
-        return match std::fs::read(name) {
+        return match std::fs::read(path_of(name)) {
             Err(e) if e.kind() == std::io::ErrorKind::IsADirectory => Ok(Vec::new()),
             result => result.map_err(failed("cannot open octree file")),
         };
     };
-    let output = runner.run(command.as_bytes()).map_err(failed("cannot execute"))?;
+    let output = runner.run(&bytes_of(command)).map_err(failed("cannot execute"))?;
     if !output.success {
         notify.warn(&format!("bad status from \"{name}\""));
     }

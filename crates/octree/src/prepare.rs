@@ -3,6 +3,7 @@
 
 use crate::{Cube, Error, Geometry, Volume, mesh, read};
 use ambit_base::{EPSILON, Notify, Transform};
+use ambit_file::name_of;
 use ambit_scene::{Class, Facet, Kind, ObjectId, Problem, Scene, Shape};
 use std::collections::HashMap;
 use std::fs::File;
@@ -115,7 +116,7 @@ impl<'a> Cubes<'a> {
         let (what, action) =
             if kind == Kind::Mesh { ("mesh", "cannot open mesh file") } else { ("octree", "cannot open octree file") };
         let path = (self.find)(name).ok_or_else(|| Error::NotFound { what, name: name.to_owned() })?;
-        let shown = path.to_string_lossy().into_owned();
+        let shown = name_of(&path).into_owned();
         let file = File::open(&path).map_err(|source| Error::Open { action, name: shown.clone(), source })?;
         let mut input = BufReader::new(file);
         let cube = if kind == Kind::Mesh {

@@ -8,7 +8,7 @@ use crate::format::{FileNode, OCTREE};
 use crate::tree::{self, Tree};
 use crate::{Cube, Error, frozen};
 use ambit_base::Notify;
-use ambit_file::{Cursor, Header};
+use ambit_file::{Cursor, Header, text_of};
 use ambit_scene::{ObjectId, Reader, Runner, Scene};
 use std::io::BufRead;
 
@@ -104,7 +104,7 @@ fn read(
         if word.is_empty() {
             break;
         }
-        scene_files.push(String::from_utf8_lossy(word).into_owned());
+        scene_files.push(text_of(word).into_owned());
     }
     let stored_count = input.int(width).ok_or_else(truncated)?;
     let first = scene.len();

@@ -4,7 +4,7 @@ use crate::format::{OCTREE, WIDTH};
 use crate::read::FORMAT;
 use crate::tree::{Node, Tree};
 use crate::{Cube, Error, frozen};
-use ambit_file::{Header, PortableWrite};
+use ambit_file::{Header, PortableWrite, bytes_of};
 use ambit_scene::Scene;
 use std::io::{self, Write};
 
@@ -46,7 +46,7 @@ pub fn write(
             out.write_string(text.as_bytes())?;
         }
         if let Objects::InFiles { names, .. } = objects {
-            names.iter().try_for_each(|name| out.write_string(name.as_bytes()))?;
+            names.iter().try_for_each(|name| out.write_string(&bytes_of(name)))?;
         }
         out.write_string(b"")?;
         out.write_int(WIDTH, count as i64)?;

@@ -10,7 +10,7 @@ use crate::prepare::{Contents, Definition, Environment, Loaded};
 use crate::{Options, Selection};
 use ambit_ambient::{Bounces, Fingerprint, Gravity, Mark, MarkLine, Spacing};
 use ambit_base::{Rgb, hash_bits, hash_point, mix};
-use ambit_file::{encode_float, general};
+use ambit_file::{bytes_of, encode_float, general, text_of};
 use ambit_octree::Mesh;
 use ambit_scene::{Class, Kind, ObjectId, Scene, VOID};
 use rayon::prelude::*;
@@ -121,7 +121,7 @@ fn word(text: &[u8], files: &mut HashMap<Vec<u8>, u64>, environment: &Environmen
 
 /// What the file of that name contains, if it may be a name and there is such a file.
 fn file(text: &[u8], environment: &Environment<'_>) -> Option<u64> {
-    let name = std::str::from_utf8(text).ok()?;
+    let name = &*text_of(text);
     let number = |text: &str| text.parse::<f64>().is_ok();
     if name.starts_with('-') || number(name) {
         return None;
@@ -256,7 +256,7 @@ fn scene_marks(sum: &Sum, environment: &Environment<'_>) -> Vec<Mark> {
             h,
             match definition {
                 Definition::Text(text) => bytes(text.as_bytes()),
-                Definition::File(name) => file(name.as_bytes(), environment).unwrap_or_else(|| bytes(name.as_bytes())),
+                Definition::File(name) => file(&bytes_of(name), environment).unwrap_or_else(|| bytes(name.as_bytes())),
             },
         )
     });
@@ -309,7 +309,8 @@ fn option_marks(options: &Options, edge: f64, relays: bool) -> Vec<Mark> {
         slight("ms", "-ms", g(medium.sampling)),
         // Ours; the files of older versions do not have them, and do not differ.
         decisive("unbounded", "--unbounded-bounces", switch(a.unbounded)),
-        decisive("cw", "-cw", options.spectrum.limits().map(g).join(",")),
+        // Values are converted, which a warning of its own tells.
+        slight("cw", "-cw", options.spectrum.limits().map(g).join(",")),
         slight("spacing", "--spacing", spacing(a.systems.spacing).to_owned()),
         slight("clamping", "--neighbor-clamping", switch(a.systems.neighbour_clamping)),
         slight("weights", "--actual-weights", switch(a.systems.actual_weights)),

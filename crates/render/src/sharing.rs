@@ -1,6 +1,7 @@
 //! The ambient file of a run: records come in when it is opened and between batches, and new ones go out in the order
 //! in which they were published.
 
+use crate::spectral::tristimulus;
 use crate::{Error, Renderer};
 use ambit_ambient::{AmbientFile, FileError, Fingerprint, Opening, PATIENCE, Reuse};
 use ambit_base::Notify;
@@ -37,7 +38,8 @@ impl Renderer {
         let components = &self.options.spectrum.components(self.passes());
         let splits = self.options.spectrum.limits();
         let fingerprint = Some(fingerprint);
-        let opening = Opening { header, components, splits, fingerprint, reuse, patience: PATIENCE, owner };
+        let observer = tristimulus;
+        let opening = Opening { header, components, splits, observer, fingerprint, reuse, patience: PATIENCE, owner };
         let opened = AmbientFile::open(path, &opening, notify).map_err(|e| failed(&e))?;
         let cache = self.cache_mut();
         cache.quantise(components.clone());

@@ -148,9 +148,6 @@ impl Renderer {
         notify: &dyn Notify,
         visit: Visit<'_>,
     ) -> Result<(Answer, Option<Spectra>), Error> {
-        if self.options.ambient.unbounded {
-            return Err(Error::user("trees of rays without a limit of bounces are not supported"));
-        }
         let mut hemispheres = self.hemispheres(request);
         let (answer, spectra) = if self.options.spectrum.is_rgb() {
             (self.show(request, 0, &mut hemispheres, &mut |ray, names| visit(ray, None, names)), None)

@@ -3,7 +3,8 @@
 //! make up for the others, so that the expected value has all bounces in it (Arvo & Kirk 1990, *Particle Transport and
 //! Image Synthesis*).
 //!
-//! Paths are followed one after the other, not one inside the other: their length is not limited by the stack.
+//! Paths are followed one after the other, not one inside the other: their length is not limited by the stack. Ray trees
+//! are the exception, where a path is shown as a branch of the ray that it comes from.
 
 use crate::Error;
 use crate::observer::Observer;
@@ -20,6 +21,8 @@ const LIKELIEST: f32 = 0.9999;
 const MOST: usize = 1_000_000;
 /// So many paths at once are only where each becomes several.
 const CROWD: usize = 10_000;
+/// Bounces of a path that is followed one inside the other, for all of which there is room on the stack.
+const MOST_NESTED: u32 = 10_000;
 /// Tag of the number that decides; the far side's is the next.
 const SURVIVAL: u64 = 0xe0;
 
@@ -30,15 +33,59 @@ impl<O: Observer> Walk<'_, O> {
         a.unbounded && a.bounces > 0 && a.divisions > 0
     }
 
-    /// Russian roulette at a diffuse surface behind the last bounce; what survives waits among the misses.
-    pub(crate) fn survive(&mut self, ray: &Ray<'_>, coefficient: Rgb, query: Query<Origin>) {
+    /// Russian roulette at a diffuse surface behind the last bounce; what survives waits among the misses, unless somebody
+    /// looks on, who wants each path where it belongs.
+    pub(crate) fn survive(&mut self, ray: &mut Ray<'_>, coefficient: Rgb, query: Query<Origin>) {
         // A negative pattern takes light away.
         let chance = coefficient.abs().max_element().min(LIKELIEST);
         let side = u64::from(query.origin.is_transmitted());
         if ray.stream.child(SURVIVAL + side).one() < f64::from(chance) {
+            if O::ACTIVE {
+                self.nested(ray, coefficient / chance, &query);
+                return;
+            }
             let coefficient = ray.throughput * ray.attenuation() * coefficient / chance;
             self.misses.push(Miss { coefficient, query });
         }
+    }
+
+    /// Follows the rest of a path inside of what its beginning is followed by.
+    fn nested(&mut self, ray: &mut Ray<'_>, coefficient: Rgb, query: &Query<Origin>) {
+        let Some(mut child) = self.continued(query) else { return };
+        if self.work.nested >= MOST_NESTED {
+            self.fail(Error::user(format!("trees of rays with more than {MOST_NESTED} bounces are not supported")));
+        }
+        if self.tracer.scene.fault.is_set() {
+            return;
+        }
+        child.parent = Some(ray);
+        child.throughput = ray.throughput * ray.attenuation() * coefficient;
+        child.coefficient = coefficient;
+        self.work.nested += 1;
+        self.evaluate(&mut child);
+        self.work.nested -= 1;
+        let value = child.value;
+        ray.value += coefficient * value;
+    }
+
+    /// The ray that goes on where a question behind the last bounce was asked; none if it would go through the surface.
+    fn continued(&self, query: &Query<Origin>) -> Option<Ray<'static>> {
+        let stream = Stream::new(
+            0,
+            hash_bits(&[hash_point(query.position), hash_point(query.shading), self.tracer.options.seed, SURVIVAL]),
+        );
+        let [s, t] = stream.two();
+        let [p, q] = square_to_disk(s, t);
+        let frame = Frame::around(query.shading);
+        let direction = frame.u * p + frame.v * q + frame.n * (1.0 - p * p - q * q).max(f64::EPSILON).sqrt();
+        if direction.dot(query.normal) <= 0.0 {
+            return None;
+        }
+        let mut ray = query.origin.go_on(query.position, direction.normalize(), stream);
+        // The roulette keeps weights as they are, and stands for the limits.
+        ray.weight = query.weight;
+        ray.depth = query.level;
+        Some(ray)
     }
 
     /// Follows all paths that wait among the misses from `first` on, and returns what they bring together. Questions to
@@ -70,21 +117,7 @@ impl<O: Observer> Walk<'_, O> {
                 self.misses.truncate(first);
                 return Rgb::ZERO;
             }
-            let stream = Stream::new(
-                0,
-                hash_bits(&[hash_point(query.position), hash_point(query.shading), self.tracer.options.seed, SURVIVAL]),
-            );
-            let [s, t] = stream.two();
-            let [p, q] = square_to_disk(s, t);
-            let frame = Frame::around(query.shading);
-            let direction = frame.u * p + frame.v * q + frame.n * (1.0 - p * p - q * q).max(f64::EPSILON).sqrt();
-            if direction.dot(query.normal) <= 0.0 {
-                continue;
-            }
-            let mut ray = query.origin.go_on(query.position, direction.normalize(), stream);
-            // The roulette keeps weights as they are, and stands for the limits.
-            ray.weight = query.weight;
-            ray.depth = query.level;
+            let Some(mut ray) = self.continued(&query) else { continue };
             let new = self.misses.len();
             self.evaluate(&mut ray);
             sum += coefficient * ray.value;

@@ -17,6 +17,8 @@ pub(crate) struct Work {
     pub(crate) chosen: Vec<Chosen>,
     /// Candidates as they are ranked.
     pub(crate) ranks: Vec<u64>,
+    /// How deep paths without end are followed one inside the other.
+    pub(crate) nested: u32,
     pub(crate) cal: ambit_cal::Scratch,
     /// Shadow tests since the last batch.
     pub(crate) tally: Tally,
@@ -33,6 +35,7 @@ impl Work {
             parts: Vec::new(),
             chosen: Vec::new(),
             ranks: Vec::new(),
+            nested: 0,
             cal: ambit_cal::Scratch::default(),
             tally: Tally::zero(sources),
             here: Tally::zero(sources).counts,

@@ -3,6 +3,7 @@
 
 use crate::{Error, Kind, ObjectId, Problem, Scene};
 use ambit_base::Transform;
+use ambit_file::text_of;
 
 /// How many real arguments a type takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,7 +149,7 @@ impl Scene {
             .strings_bytes(id)
             .skip(first)
             .skip_while(|word| !is_volume && !TRANSFORM_WORDS.contains(word))
-            .map(String::from_utf8_lossy)
+            .map(text_of)
             .collect();
         Transform::parse(&words).map_err(|_| self.problem(id, Problem::BadTransform))
     }

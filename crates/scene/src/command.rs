@@ -27,8 +27,10 @@ pub struct Shell;
 impl Runner for Shell {
     fn run(&mut self, command: &[u8]) -> io::Result<CommandOutput> {
         use std::os::unix::ffi::OsStrExt;
+        use std::os::unix::process::CommandExt;
         use std::process::{Command, Stdio};
         let output = Command::new("/bin/sh")
+            .arg0("sh")
             .arg("-c")
             .arg(std::ffi::OsStr::from_bytes(command))
             .stdin(Stdio::inherit())

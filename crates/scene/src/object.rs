@@ -4,6 +4,7 @@
 use crate::Kind;
 use crate::names::Names;
 use ambit_base::Location;
+use ambit_file::text_of;
 
 /// Number of a primitive in reading order, over all files of a scene and everything it instances.
 pub type ObjectId = u32;
@@ -171,9 +172,9 @@ impl Scene {
         &self.text[self.object(id).name.range()]
     }
 
-    /// Identifier, with bytes that are not UTF-8 replaced.
+    /// Identifier, as text ([`text_of`]).
     pub fn name(&self, id: ObjectId) -> std::borrow::Cow<'_, str> {
-        String::from_utf8_lossy(self.name_bytes(id))
+        text_of(self.name_bytes(id))
     }
 
     /// Number of string arguments.
@@ -187,14 +188,14 @@ impl Scene {
         Some(&self.text[span.range()])
     }
 
-    /// String argument `i` (from 0), with bytes that are not UTF-8 replaced.
+    /// String argument `i` (from 0), as text ([`text_of`]).
     pub fn string(&self, id: ObjectId, i: usize) -> Option<std::borrow::Cow<'_, str>> {
-        self.string_bytes(id, i).map(String::from_utf8_lossy)
+        self.string_bytes(id, i).map(text_of)
     }
 
     /// All string arguments.
     pub fn strings(&self, id: ObjectId) -> impl ExactSizeIterator<Item = std::borrow::Cow<'_, str>> {
-        self.strings[self.object(id).strings.range()].iter().map(|s| String::from_utf8_lossy(&self.text[s.range()]))
+        self.strings[self.object(id).strings.range()].iter().map(|s| text_of(&self.text[s.range()]))
     }
 
     /// All string arguments, as bytes.

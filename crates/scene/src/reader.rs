@@ -4,7 +4,7 @@ use crate::command::Runner;
 use crate::lexer::Lexer;
 use crate::{Error, ErrorKind, Kind, NewObject, ObjectId, Scene, VOID};
 use ambit_base::{Location, Notify};
-use ambit_file::os_text;
+use ambit_file::{bytes_of, name_of, os_text, path_of, text_of};
 use std::borrow::Cow;
 use std::io::Read;
 use std::path::Path;
@@ -52,13 +52,13 @@ impl<'a> Reader<'a> {
 
     /// Reads what a program was given as the name of a scene file: a command if it begins with `!`, else a file.
     pub fn read(&mut self, name: &str) -> Result<(), Error> {
-        if name.starts_with('!') { self.read_command(name.as_bytes()) } else { self.read_file(name) }
+        if name.starts_with('!') { self.read_command(&bytes_of(name)) } else { self.read_file(path_of(name)) }
     }
 
     /// Reads a file, by the name as given (no search path). A directory counts as an empty file.
     pub fn read_file(&mut self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
-        let name = path.to_string_lossy();
+        let name = name_of(path);
         let bytes = match std::fs::read(path) {
             Ok(bytes) => bytes,
             Err(e) if e.kind() == std::io::ErrorKind::IsADirectory => Vec::new(),
@@ -89,7 +89,7 @@ impl<'a> Reader<'a> {
 
     /// Runs a command, which begins with `!`, and reads what it prints. If it fails there is only a warning.
     pub fn read_command(&mut self, command: &[u8]) -> Result<(), Error> {
-        let name = String::from_utf8_lossy(command).into_owned();
+        let name = text_of(command).into_owned();
         let before = self.scene.len();
         let refuse = |reason| Err(Error::new(ErrorKind::CannotExecute { command: name.clone(), reason }, whole(&name)));
         if self.depth >= MAX_DEPTH {
@@ -136,7 +136,7 @@ impl<'a> Reader<'a> {
     fn primitive(&mut self, lexer: &mut Lexer<'_>, input: &Input<'_>) -> Result<(), Error> {
         let line = lexer.line();
         let file = || input.name.to_owned();
-        let text = |word: &[u8]| String::from_utf8_lossy(word).into_owned();
+        let text = |word: &[u8]| text_of(word).into_owned();
 
         let Some(word) = lexer.word() else { return Ok(()) };
         if word.contains(&b'\t') {

@@ -64,7 +64,7 @@ impl std::fmt::Display for Failure {
             Self::Missing(file) => write!(f, "{file}: file not found"),
             Self::Input(e) => write!(f, "lookamb: cannot read input: {e}"),
             Self::Format(problem) => write!(f, "lookamb: format error on input: {problem}"),
-            Self::Output(e) => write!(f, "lookamb: cannot write output: {e}"),
+            Self::Output(e) => write!(f, "lookamb: cannot write output: {}", ambit_file::os_text(e)),
         }
     }
 }
@@ -97,7 +97,7 @@ fn run(words: &[OsString]) -> Result<(), Failure> {
         io::stdin().lock().read_to_end(&mut bytes).map_err(Failure::Input)?;
         "standard input".to_owned()
     };
-    let mut out = BufWriter::new(io::stdout().lock());
+    let mut out = BufWriter::new(ambit_cli::StandardOutput::new());
     if options.reverse {
         let line = command_line(b"lookamb", words.iter().skip(1).map(|w| w.as_bytes()));
         to_binary(&bytes, &name, options, &line, &mut out)?;

@@ -2,11 +2,11 @@
 
 use ambit_base::Notify;
 use ambit_cli::{Class, ConsoleMessages, Failure, VERSION};
-use ambit_file::{Header, command_line};
+use ambit_file::{Header, command_line, path_of};
 use ambit_octree::{Error, Limits, MESH_LIMITS, compile_mesh};
 use ambit_scene::{ErrorClass, Reader, Scene, Shell};
 use std::fs::File;
-use std::io::{BufWriter, Read, Write, stdin, stdout};
+use std::io::{BufWriter, Read, stdin};
 use std::process::ExitCode;
 
 const HELP: &str = "\
@@ -29,7 +29,7 @@ coordinates are kept where all corners of a triangle have them.
 ";
 
 fn main() -> ExitCode {
-    let mut words = std::env::args_os().map(|w| w.to_string_lossy().into_owned());
+    let mut words = std::env::args_os().map(|w| ambit_file::word_of(&w));
     let program = words.next().unwrap_or_default();
     let program = program.rsplit('/').next().unwrap_or_default().to_owned();
     let arguments: Vec<String> = words.collect();
@@ -100,8 +100,7 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Failure> {
     let request = match parse(arguments)? {
         Asked::Mesh(request) => request,
         Asked::Text(text) => {
-            // Nobody reading the help is no failure.
-            let _ = stdout().write_all(text.as_bytes());
+            ambit_cli::answer(text.as_bytes());
             return Ok(());
         }
     };
@@ -110,7 +109,9 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Failure> {
     let mut text = Vec::new();
     let name = request.input.clone().unwrap_or_else(|| "standard input".to_owned());
     match &request.input {
-        Some(file) => text = std::fs::read(file).map_err(|_| Failure::user(format!("cannot open \"{file}\"")))?,
+        Some(file) => {
+            text = std::fs::read(path_of(file)).map_err(|_| Failure::user(format!("cannot open \"{file}\"")))?;
+        }
         None => {
             stdin().lock().read_to_end(&mut text).map_err(|e| Failure::system("cannot read standard input", &e))?;
         }
@@ -124,10 +125,10 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Failure> {
     header.push(command_line(program.as_bytes(), &arguments[..request.told]));
     match &request.output {
         Some(file) => {
-            let file = File::create(file).map_err(|e| Failure::system("cannot open output file", &e))?;
+            let file = File::create(path_of(file)).map_err(|e| Failure::system("cannot open output file", &e))?;
             mesh.write(&mut BufWriter::new(file), &header)
         }
-        None => mesh.write(&mut BufWriter::new(stdout().lock()), &header),
+        None => mesh.write(&mut BufWriter::new(ambit_cli::StandardOutput::ending()), &header),
     }
     .map_err(|e| failure(&e))
 }

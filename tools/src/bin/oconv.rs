@@ -1,11 +1,11 @@
 //! oconv: scene files to an octree on standard output.
 
 use ambit_base::{DVec3, Location, Notify};
-use ambit_cli::{Class, ConsoleMessages, Failure, VERSION};
-use ambit_file::{Header, Library, SearchPath, command_line};
+use ambit_cli::{Class, ConsoleMessages, Failure, StandardOutput, VERSION, answer};
+use ambit_file::{Header, Library, SearchPath, bytes_of, command_line, variable, word_of};
 use ambit_octree::{Cube, Error, Find, Limits, Objects, Prepared, Tree};
 use ambit_scene::{ErrorClass, Reader, Scene, Shell};
-use std::io::{BufWriter, Write, stdout};
+use std::io::BufWriter;
 use std::process::ExitCode;
 
 const HELP: &str = "\
@@ -34,7 +34,7 @@ const MOST_FILES: usize = 255;
 const BUFFER: usize = 1 << 20;
 
 fn main() -> ExitCode {
-    let mut words = std::env::args_os().map(|w| w.to_string_lossy().into_owned());
+    let mut words = std::env::args_os().map(|w| word_of(&w));
     let program = words.next().unwrap_or_default();
     let arguments: Vec<String> = words.collect();
     let program = program.rsplit('/').next().unwrap_or_default();
@@ -149,25 +149,23 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Stop> {
     let request = match parse(arguments)? {
         Asked::Octree(request) => request,
         Asked::Text(text) => {
-            // Nobody reading the help is no failure.
-            let _ = stdout().write_all(text.as_bytes());
+            answer(text.as_bytes());
             return Ok(());
         }
     };
     let notify = ConsoleMessages { program: program.to_owned(), warnings: !request.quiet };
-    let variable = |name| std::env::var(name).ok();
     let search = SearchPath::new(variable("RAYPATH").as_deref(), variable("HOME").as_deref(), Library::NONE);
     let find = |name: &str| search.find_path(name);
     let mut header = Header::empty();
     let octree = convert(&request, &mut header, &find, &notify)?;
-    header.push(command_line(program.as_bytes(), arguments));
+    header.push(command_line(&bytes_of(program), arguments.iter().map(|w| bytes_of(w))));
     let frozen = octree.frozen;
     let objects = if frozen {
         Objects::Frozen(&octree.scene)
     } else {
         Objects::InFiles { names: &octree.names, count: octree.scene.len() }
     };
-    let mut out = BufWriter::with_capacity(BUFFER, stdout().lock());
+    let mut out = BufWriter::with_capacity(BUFFER, StandardOutput::ending());
     Ok(ambit_octree::write(&mut out, &header, &octree.cube, objects, &octree.tree)?)
 }
 

@@ -195,8 +195,9 @@ impl Picture<'_> {
             },
             &mut |mut band: Band| {
                 small.draw(&mut band, &mut |requests| -> Result<_, Stop> {
-                    let mut answers = Vec::new();
-                    scene.borrow_mut().trace(requests, &mut answers)?;
+                    let (mut scene, mut answers) = (scene.borrow_mut(), Vec::new());
+                    scene.check()?;
+                    scene.trace(requests, &mut answers)?;
                     Ok(answers.iter().map(|a| self.pixel(a)).collect())
                 })?;
                 let left = f64::from(band.top + 1) - band.rows.len() as f64;

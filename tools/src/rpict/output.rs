@@ -2,8 +2,8 @@
 
 use crate::session::Stop;
 use ambit_base::Rgb;
-use ambit_cli::Failure;
-use ambit_file::{encode_pixel, encode_scanline};
+use ambit_cli::{Failure, StandardOutput};
+use ambit_file::{encode_pixel, encode_scanline, path_of};
 use std::fs::{File, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};
 
@@ -19,9 +19,9 @@ impl PictureOutput {
     /// Opens the outputs. A picture's file must be new; a file of distances is written over, from row `done` on.
     pub(crate) fn open(picture: Option<&str>, distances: Option<&str>, done: u32, width: u32) -> Result<Self, Failure> {
         let stream: Box<dyn Write> = match picture {
-            None => Box::new(io::stdout()),
+            None => Box::new(StandardOutput::new()),
             Some(name) => {
-                let file = OpenOptions::new().write(true).create_new(true).open(name);
+                let file = OpenOptions::new().write(true).create_new(true).open(path_of(name));
                 Box::new(file.map_err(|e| Failure::system(format!("cannot open output file \"{name}\""), &e))?)
             }
         };
@@ -31,7 +31,7 @@ impl PictureOutput {
                 let failed = |e: io::Error| Failure::system(format!("cannot open z-file \"{name}\""), &e);
                 // An old, longer file keeps its tail, as Radiance's does.
                 let mut file =
-                    OpenOptions::new().write(true).create(true).truncate(false).open(name).map_err(failed)?;
+                    OpenOptions::new().write(true).create(true).truncate(false).open(path_of(name)).map_err(failed)?;
                 let offset = u64::from(done) * u64::from(width) * size_of::<f32>() as u64;
                 file.seek(SeekFrom::Start(offset)).map_err(failed)?;
                 Some(file)

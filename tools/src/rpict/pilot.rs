@@ -7,10 +7,9 @@ use crate::goal::{self, Goal, SIDE};
 use crate::light::Scene;
 use crate::session::{Session, Stop};
 use ambit_cli::{Failure, PictureOptions};
-use ambit_file::{PixelSpace, Projection};
+use ambit_file::{PixelSpace, Projection, path_of};
 use ambit_render::Options;
 use ambit_render::picture::{Camera, Lens, Order, Pixel, PixelRequest, Sampler};
-use std::path::Path;
 
 /// Chooses the settings for the picture that the options ask for.
 pub(super) fn choose(
@@ -31,8 +30,8 @@ pub(super) fn choose(
 
 /// The view, which a recovered picture brings along.
 fn view(session: &Session, options: &PictureOptions, space: PixelSpace) -> Result<Projection, Stop> {
-    let path = options.recover.as_deref().map(Path::new).filter(|path| path.exists());
-    let recovered = path.and_then(|path| recover::read(session, path.to_path_buf(), space));
+    let path = options.recover.as_deref().map(path_of).filter(|path| path.exists());
+    let recovered = path.and_then(|path| recover::read(session, path, space));
     Ok(set_up(recovered.as_ref().map_or(&options.view, |r| &r.view))?)
 }
 

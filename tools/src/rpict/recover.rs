@@ -3,7 +3,7 @@
 use crate::session::{Session, Stop};
 use ambit_base::Notify;
 use ambit_cli::Failure;
-use ambit_file::{PictureReader, PixelSpace, View};
+use ambit_file::{PictureReader, PixelSpace, View, name_of, path_of};
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -23,9 +23,9 @@ pub(crate) struct Recovered {
 /// Moves the file out of the way if the new picture will have its name. Returns its name from now on, `None` if there
 /// is no such file.
 pub(crate) fn set_aside(session: &Session, file: &str, output: Option<&str>) -> Result<Option<PathBuf>, Stop> {
-    let path = Path::new(file);
+    let path = path_of(file);
     if output != Some(file) {
-        return Ok(Some(path.to_path_buf()));
+        return Ok(Some(path));
     }
     if !path.exists() {
         session.messages.warn(&format!("new output file \"{file}\""));
@@ -33,7 +33,7 @@ pub(crate) fn set_aside(session: &Session, file: &str, output: Option<&str>) -> 
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let spare = spare_name(folder, std::process::id());
-    fs::rename(path, &spare).map_err(|e| Failure::system(format!("cannot rename \"{file}\""), &e))?;
+    fs::rename(&path, &spare).map_err(|e| Failure::system(format!("cannot rename \"{file}\""), &e))?;
     Ok(Some(spare))
 }
 
@@ -58,7 +58,7 @@ fn spare_name(folder: &Path, seed: u32) -> PathBuf {
 
 /// Reads what is there, with Radiance's warnings if nothing is.
 pub(crate) fn read(session: &Session, file: PathBuf, space: PixelSpace) -> Option<Recovered> {
-    let name = file.display().to_string();
+    let name = name_of(&file).into_owned();
     let warn = |text: String| session.messages.warn(&text);
     let Ok(open) = File::open(&file) else {
         warn(format!("cannot recover view parameters from \"{name}\""));

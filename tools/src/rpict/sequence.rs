@@ -6,9 +6,8 @@ use crate::light::Scene;
 use crate::session::Stop;
 use ambit_base::Notify;
 use ambit_cli::{Failure, PictureOptions};
-use ambit_file::{View, integer, is_view_line};
+use ambit_file::{View, integer, is_view_line, path_of};
 use std::io::{BufRead, Read};
-use std::path::Path;
 
 /// Longest line of views, in bytes; what follows counts as a line of its own.
 const LONGEST_LINE: usize = 255;
@@ -78,7 +77,7 @@ fn plan(
         if recovers {
             let aside = recover::set_aside(picture.session, &name, Some(&name))?;
             frame.take_over(aside.and_then(|path| recover::read(picture.session, path, picture.space)));
-        } else if name != *pattern && Path::new(&name).exists() {
+        } else if name != *pattern && path_of(&name).exists() {
             return Ok(None);
         }
         frame.output = Some(name);

@@ -29,6 +29,7 @@ impl Shots {
             self.requests.push(request);
             self.places.push(place);
         }
+        light.check()?;
         light.trace(&self.requests, &mut self.answers)?;
         let mut all = vec![Pixel::default(); pixels.len()];
         for (&place, answer) in self.places.iter().zip(&self.answers) {

@@ -3,10 +3,46 @@
 use ambit_base::DVec3;
 use ambit_cli::InputFormat;
 use ambit_file::real;
-use std::io::{self, BufRead};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::Errno;
+use std::io::{self, BufRead, Read};
+use std::os::fd::AsFd;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Longest word of text input; what follows counts as a word of its own.
 const LONGEST_WORD: usize = 31;
+
+/// How often it is looked whether a signal has ended the wait for input.
+const GLANCE: Timespec = Timespec { tv_sec: 0, tv_nsec: 20_000_000 };
+
+/// Input that ends where a signal asks the work to stop, however long its writer may wait.
+pub(crate) struct Patient<R> {
+    input: R,
+    stop: Arc<AtomicBool>,
+}
+
+impl<R> Patient<R> {
+    /// Ends once `stop` is true.
+    pub(crate) fn new(input: R, stop: Arc<AtomicBool>) -> Self {
+        Self { input, stop }
+    }
+}
+
+impl<R: Read + AsFd> Read for Patient<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        loop {
+            if self.stop.load(Ordering::Acquire) {
+                return Ok(0);
+            }
+            match poll(&mut [PollFd::new(&self.input, PollFlags::IN)], Some(&GLANCE)) {
+                Ok(0) | Err(Errno::INTR) => {}
+                // What it cannot look at it reads.
+                Ok(_) | Err(_) => return self.input.read(bytes),
+            }
+        }
+    }
+}
 
 /// Reads rays.
 pub(crate) struct RayReader<R> {

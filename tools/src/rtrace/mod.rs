@@ -12,13 +12,16 @@ use crate::session::{Session, Stop, Tool, on_deep_stack, split};
 use crate::spectral::Converter;
 use ambit_base::Notify;
 use ambit_cli::{
-    About, COMMON_FEATURES, Failure, Features, Field, OutputFormat, OutputSpec, RAY_FEATURES, RayOptions, ray_table,
+    About, COMMON_FEATURES, Failure, Features, Field, OutputFormat, OutputSpec, RAY_FEATURES, RayOptions,
+    StandardOutput, ray_table,
 };
 use ambit_render::OctreeSource;
-use input::RayReader;
+use input::{Patient, RayReader};
 use record::RecordWriter;
 use std::ffi::OsString;
-use std::io::{BufReader, Read, Write, stdin, stdout};
+use std::fs::File;
+use std::io::{BufReader, Read, Write, stdin};
+use std::os::fd::AsFd;
 use std::process::ExitCode;
 use tree::TreeWriter;
 
@@ -64,7 +67,10 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     let goal = options.rendering.goal.filter(|_| job.spec.shades());
     let Some(error) = goal else {
         scene.begin(&octree, &options.rendering)?;
-        let result = job.run(session, &options, &mut scene, stdin().lock());
+        // Not by way of Rust's own buffer, of which a poll knows nothing.
+        let input =
+            stdin().as_fd().try_clone_to_owned().map_err(|e| Failure::system("cannot read standard input", &e))?;
+        let result = job.run(session, &options, &mut scene, Patient::new(File::from(input), session.stop()));
         // The ambient file is closed whatever happened; the first error counts.
         return result.and(scene.close());
     };
@@ -92,10 +98,6 @@ impl Job {
         let conversion = Converter::new(options.common.output, spectrum);
         if !spectrum.shows_colour() && !options.common.output.bins() {
             session.messages.warn("spectral range incompatible with color output");
-        }
-        if spec.tree.is_some() && options.rendering.options.ambient.unbounded {
-            let what = format!("ray trees (-o{}) with --unbounded-bounces (or --unbiased) are", options.fields);
-            return Err(Failure::unsupported(&what).into());
         }
         if options.format == OutputFormat::Colour {
             if spec.tree.is_some() || !matches!(spec.fields[..], [Field::Value | Field::Mirrored | Field::Unmirrored]) {
@@ -142,7 +144,7 @@ impl Job {
         scene: &mut Scene<'_>,
         input: impl Read,
     ) -> Result<(), Stop> {
-        let mut out = stdout().lock();
+        let mut out = StandardOutput::new();
         let picture = (options.width > 0 && options.height > 0).then_some((options.width, options.height));
         let mut head = Vec::new();
         if options.header {
@@ -154,7 +156,7 @@ impl Job {
         }
         let written = out.write_all(&head).and_then(|()| if options.width > 0 { out.flush() } else { Ok(()) });
         written.map_err(|e| Stop::writing("write error", &e))?;
-        let records = RecordWriter::new(&self.spec.fields, &self.conversion, options.format);
+        let records = RecordWriter::new(&self.spec.fields, &self.conversion, options);
         let tree = self.spec.tree.as_ref().map(|t| TreeWriter::new(t, &self.conversion, options));
         let reader = RayReader::new(BufReader::with_capacity(1 << 16, input), options.input);
         let complete =

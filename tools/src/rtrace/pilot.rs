@@ -39,6 +39,7 @@ fn values(requests: &[Request], scene: &mut Scene<'_>) -> Result<Vec<[f32; 3]>, 
     let mut values = Vec::with_capacity(requests.len());
     let mut answers = Vec::new();
     while values.len() < requests.len() {
+        scene.check()?;
         let left = &requests[values.len()..];
         scene.trace(&left[..batches.next(left.len())], &mut answers)?;
         values.extend(answers.iter().map(|a| a.value.to_array()));

@@ -3,7 +3,7 @@
 use crate::quantity::push_exponent;
 use crate::spectral::{Channels, Converter};
 use ambit_base::{DVec3, FAR, Rgb};
-use ambit_cli::{Field, OutputFormat};
+use ambit_cli::{Field, OutputFormat, RayOptions};
 use ambit_file::encode_spectrum;
 use ambit_render::{Answer, Bins, Names, Spectra, Spectrum};
 use ambit_scene::VOID;
@@ -13,12 +13,14 @@ pub(crate) struct RecordWriter<'a> {
     fields: &'a [Field],
     conversion: &'a Converter,
     format: OutputFormat,
+    /// What light is multiplied by; shares of it (`W`) are not.
+    efficacy: f32,
 }
 
 impl<'a> RecordWriter<'a> {
     /// Records of these fields.
-    pub(crate) fn new(fields: &'a [Field], conversion: &'a Converter, format: OutputFormat) -> Self {
-        Self { fields, conversion, format }
+    pub(crate) fn new(fields: &'a [Field], conversion: &'a Converter, options: &RayOptions) -> Self {
+        Self { fields, conversion, format: options.format, efficacy: options.common.output.efficacy() }
     }
 
     /// Appends the records of a batch, with its spectra if the calculation is by wavelength.
@@ -51,10 +53,12 @@ impl<'a> RecordWriter<'a> {
             match field {
                 Field::Origin => self.vector(out, answer.origin),
                 Field::Direction => self.vector(out, answer.direction),
-                Field::Value => self.colour(out, answer.value, bins.map(|b| b.value)),
-                Field::Contribution => self.colour(out, contribution, bins.map(|b| b.contribution)),
+                Field::Value => self.light(out, answer.value, bins.map(|b| b.value)),
+                Field::Contribution => self.light(out, contribution, bins.map(|b| b.contribution)),
                 Field::Weight => self.number(out, f64::from(answer.weight)),
-                Field::Coefficient => self.colour(out, answer.coefficient, bins.map(|b| b.coefficient)),
+                Field::Coefficient => {
+                    self.colour(out, answer.coefficient, bins.map(|b| b.coefficient), self.efficacy);
+                }
                 Field::Length => self.number(out, answer.length),
                 Field::FirstLength => self.number(out, answer.first_length),
                 Field::Coordinates => answer.uv.iter().for_each(|&x| self.number(out, x)),
@@ -64,14 +68,14 @@ impl<'a> RecordWriter<'a> {
                 Field::Surface => name(out, answer.surface),
                 Field::Modifier => name(out, answer.modifier),
                 Field::Material => name(out, answer.material),
-                Field::Mirrored => self.colour(out, answer.mirrored, bins.map(|b| b.mirrored)),
+                Field::Mirrored => self.light(out, answer.mirrored, bins.map(|b| b.mirrored)),
                 Field::Unmirrored => match bins {
                     Some(b) => {
                         let mut rest = Channels::default();
                         rest.iter_mut().zip(b.value.iter().zip(b.mirrored)).for_each(|(r, (v, m))| *r = v - m);
-                        self.colour(out, Rgb::ZERO, Some(&rest[..b.value.len()]));
+                        self.light(out, Rgb::ZERO, Some(&rest[..b.value.len()]));
                     }
-                    None => self.colour(out, answer.value - answer.mirrored, None),
+                    None => self.light(out, answer.value - answer.mirrored, None),
                 },
                 Field::MirroredLength => self.number(out, answer.mirrored_length),
                 Field::UnmirroredLength => self.number(out, answer.unmirrored_length),
@@ -102,17 +106,29 @@ impl<'a> RecordWriter<'a> {
         }
     }
 
-    /// A colour, or in a calculation by wavelength its `bins`.
-    fn colour(&self, out: &mut Vec<u8>, colour: Rgb, bins: Option<&[f32]>) {
-        match (self.conversion, bins) {
-            (Converter::Spectral(conversion), Some(bins)) => {
-                self.channels(out, conversion.apply(bins, &mut Channels::default()));
-            }
+    /// Light, or in a calculation by wavelength its `bins`.
+    fn light(&self, out: &mut Vec<u8>, colour: Rgb, bins: Option<&[f32]>) {
+        self.colour(out, colour, bins, 1.0);
+    }
+
+    /// A colour as it is written, over a divisor.
+    fn colour(&self, out: &mut Vec<u8>, colour: Rgb, bins: Option<&[f32]>, divisor: f32) {
+        let mut made = Channels::default();
+        let count = match (self.conversion, bins) {
+            (Converter::Spectral(conversion), Some(bins)) => conversion.apply(bins, &mut made).len(),
             (Converter::Rgb(conversion), _) => {
-                self.channels(out, &conversion.apply(colour).to_array()[..conversion.channels()]);
+                made[..3].copy_from_slice(&conversion.apply(colour).to_array());
+                conversion.channels()
             }
-            (Converter::Spectral(_), None) => {}
+            (Converter::Spectral(_), None) => 0,
+        };
+        let made = &mut made[..count];
+        if divisor != 1.0 {
+            for channel in &mut *made {
+                *channel /= divisor;
+            }
         }
+        self.channels(out, made);
     }
 
     fn channels(&self, out: &mut Vec<u8>, channels: &[f32]) {

@@ -14,7 +14,7 @@ use ambit_render::picture::Batches;
 use ambit_render::{Aim, Answer, Request};
 use std::io::{BufRead, Write};
 
-/// Bytes that are collected before they are written, unless they must be flushed.
+/// Bytes of a tree that are collected before they are written.
 const BUFFER: usize = 1 << 16;
 
 /// How a stream is cut.
@@ -117,7 +117,8 @@ impl Stream {
                 flush |= unflushed > 0;
             }
             let full = self.most > 0 && made >= self.most;
-            if flush || end || full || bytes.len() >= BUFFER {
+            // What has been calculated is safe from whatever ends the program while the next rays are waited for.
+            if !bytes.is_empty() {
                 out.write_all(&bytes).map_err(|e| Stop::writing("write error", &e))?;
                 bytes.clear();
             }
@@ -125,6 +126,8 @@ impl Stream {
                 out.flush().map_err(|e| Stop::writing("write error", &e))?;
                 unflushed = 0;
             }
+            // Whether the input has ended or a signal ended it: what was read is answered.
+            light.check()?;
             if end || full {
                 return Ok(full || self.most == 0);
             }
@@ -214,7 +217,7 @@ mod tests {
         set(&mut options);
         let spec = OutputSpec::parse(&options.fields).unwrap();
         let converter = Converter::new(options.common.output, &options.rendering.options.spectrum);
-        let records = RecordWriter::new(&spec.fields, &converter, options.format);
+        let records = RecordWriter::new(&spec.fields, &converter, &options);
         let log = Rc::new(RefCell::new(Vec::new()));
         let mut out = Watched(Rc::clone(&log), Vec::new(), 0);
         let rays = RayReader::new(input.as_bytes(), InputFormat::Ascii);

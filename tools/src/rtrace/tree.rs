@@ -3,6 +3,7 @@
 use super::record::RecordWriter;
 use crate::spectral::Converter;
 use ambit_cli::{RayOptions, TreeSpec};
+use ambit_file::bytes_of;
 use ambit_render::{Bins, Names, Selection, TreeRay};
 
 /// Writes the rays of trees.
@@ -15,7 +16,7 @@ pub(crate) struct TreeWriter<'a> {
 impl<'a> TreeWriter<'a> {
     /// Writes what `spec` asks for of the rays that the options select.
     pub(crate) fn new(spec: &'a TreeSpec, conversion: &'a Converter, options: &'a RayOptions) -> Self {
-        let record = RecordWriter::new(&spec.fields, conversion, options.format);
+        let record = RecordWriter::new(&spec.fields, conversion, options);
         Self { record, shadows: spec.shadows, selection: &options.tree }
     }
 
@@ -32,7 +33,7 @@ impl<'a> TreeWriter<'a> {
     fn selects(&self, ray: &TreeRay, names: Names<'_>) -> bool {
         let listed = |list: &[String]| {
             ray.answer.surface != ambit_scene::VOID
-                && list.iter().any(|name| name.as_bytes() == names(ray.answer.modifier))
+                && list.iter().any(|name| *bytes_of(name) == *names(ray.answer.modifier))
         };
         match self.selection {
             Selection::All => true,

@@ -6,9 +6,11 @@ use super::scan::{Contents, FORMAT, scan_as};
 use super::segment::{has_segments, missing, remove_done, segments};
 use super::share::{AmbientFile, Locks, Spare, cut, io_error, lock, read_from, skipped};
 use crate::codec::Layout;
+use crate::components::Components;
+use crate::conversion::{Conversion, Sampling};
 use crate::record::Record;
 use ambit_base::Notify;
-use ambit_file::{FileLock, Header, LockMode, general, os_text};
+use ambit_file::{FileLock, Header, LockMode, bytes_of, general, name_of, os_text};
 use std::cell::Cell;
 use std::fs::File;
 use std::io::{ErrorKind, Seek, SeekFrom, Write};
@@ -21,8 +23,6 @@ use std::time::Duration;
 const TRIES: u32 = 40;
 /// How long to wait in between; four seconds in all, as Radiance does.
 const PAUSE: Duration = Duration::from_millis(100);
-/// The wavelengths of a file that does not tell.
-const SPLITS: [f64; 4] = [780.0, 588.0, 480.0, 380.0];
 /// Significant digits of wavelengths.
 const DIGITS: usize = 6;
 
@@ -57,7 +57,7 @@ impl AmbientFile {
     /// Warnings tell of files of other scenes (see [`Reuse`]), of read-only ones, damaged records (which are skipped),
     /// incomplete ones at the end (which are cut off) and missing locks.
     pub fn open(path: &Path, opening: &Opening<'_>, notify: &dyn Notify) -> Result<Opened, FileError> {
-        let name = path.to_string_lossy().into_owned();
+        let name = name_of(path).into_owned();
         Entry { path, name, opening, notify, beside: false, lockless: Cell::new(false) }.open()
     }
 }
@@ -185,13 +185,15 @@ impl Entry<'_> {
     /// What a new file begins with, or a segment of the file that has this header.
     fn head(&self, main: Option<&Header>) -> Vec<u8> {
         let mut header = Header::new();
-        header.extend(self.opening.header);
+        header.extend(self.opening.header.iter().map(|line| bytes_of(line)));
         match main {
             Some(main) => header.extend(super::fingerprint_lines(main)),
             None => header.extend(self.opening.fingerprint.map(super::Fingerprint::lines).unwrap_or_default()),
         }
-        header.push(format!("WAVELENGTH_SPLITS= {}", words(&self.opening.splits)));
-        header.push(format!("NCOMP={}", self.opening.components.count()));
+        let splits = main.and_then(Header::wavelength_splits).unwrap_or(self.opening.splits);
+        let count = main.map_or(self.opening.components.count(), |main| main.components() as usize);
+        header.push(format!("WAVELENGTH_SPLITS= {}", words(&splits)));
+        header.push(format!("NCOMP={count}"));
         header.push(format!("FORMAT={FORMAT}"));
         let mut bytes = Vec::new();
         // Writing to memory does not fail.
@@ -236,7 +238,8 @@ impl Entry<'_> {
         let segments = segments(self.path, contents, self.notify);
         let (records, bytes) = missing(contents, &segments);
         contents.records.extend_from_slice(&records);
-        let Some(mut file) = file else { return end };
+        // What is converted twice is not what it was: the next run of the file's own sampling merges.
+        let Some(mut file) = file.filter(|_| !contents.components.is_converted()) else { return end };
         if !bytes.is_empty() {
             let written = file.seek(SeekFrom::Start(end)).and_then(|_| file.write_all(&bytes));
             if let Err(e) = written.and_then(|()| file.sync_data()) {
@@ -265,6 +268,7 @@ impl Entry<'_> {
                 if let Some(text) = warning {
                     self.notify.warn(&text);
                 }
+                self.tell_sampling(&contents);
                 self.tell_damage(&contents);
                 let spare = self.spare(self.head(Some(&contents.header)));
                 let Contents { layout, components, start, records, .. } = contents;
@@ -288,7 +292,7 @@ impl Entry<'_> {
             self.notify.warn(&unused);
             return Opened::NOTHING;
         };
-        let name = path.to_string_lossy().into_owned();
+        let name = name_of(&path).into_owned();
         if self.opening.reuse == Reuse::ReadOnly && !path.exists() {
             self.notify.warn(&unused);
             return Opened::NOTHING;
@@ -320,6 +324,7 @@ impl Entry<'_> {
                 if let Some(text) = warning {
                     self.notify.warn(&text);
                 }
+                self.tell_sampling(&contents);
                 self.tell_damage(&contents);
                 self.merge(&mut contents, None, 0);
                 if self.opening.reuse != Reuse::ReadOnly {
@@ -332,14 +337,35 @@ impl Entry<'_> {
     }
 
     fn understood(&self, bytes: &[u8]) -> Result<Contents, FileError> {
-        let contents =
-            scan_as(bytes, &self.name, self.opening.components).map_err(|problem| self.incompatible(problem))?;
-        let (found, expected) = (contents.header.wavelength_splits().unwrap_or(SPLITS), self.opening.splits);
-        if contents.components.count() > 3 && words(&found) != words(&expected) {
-            let (found, expected) = (words(&found), words(&expected));
-            return Err(self.incompatible(format!("WAVELENGTH_SPLITS= {found}, of another -cw (expected {expected})")));
+        let contents = scan_as(bytes, &self.name, |header| self.components(header));
+        let contents = contents.map_err(|problem| self.incompatible(problem))?;
+        if contents.components.is_converted() && self.opening.reuse == Reuse::Strict {
+            let problem = format!("it is of another wavelength sampling ({})", shown(&contents.header));
+            return Err(FileError::Unfit { file: self.name.clone(), problem });
         }
         Ok(contents)
+    }
+
+    /// The run's components in a file of this header, which may be of another sampling.
+    fn components(&self, header: &Header) -> Result<Components, String> {
+        let Opening { components, splits, observer, .. } = *self.opening;
+        let found = Sampling::of(header).ok_or("bad WAVELENGTH_SPLITS")?;
+        let run = Sampling::new(components.count(), splits).ok_or("a run without wavelengths")?;
+        Ok(if found.is_as(&run) {
+            components.clone()
+        } else {
+            components.converted(Conversion::new(&found, &run, observer))
+        })
+    }
+
+    /// Says that values are converted.
+    fn tell_sampling(&self, contents: &Contents) {
+        if contents.components.is_converted() {
+            let (name, found) = (&self.name, shown(&contents.header));
+            self.notify.warn(&format!(
+                "different ambient file wavelength sampling: \"{name}\" is of {found}, and its values are converted"
+            ));
+        }
     }
 
     fn incompatible(&self, problem: impl Into<String>) -> FileError {
@@ -363,6 +389,11 @@ struct Existing {
     /// Where its last whole record ends.
     end: u64,
     locked: bool,
+}
+
+/// The sampling of a header that has one.
+fn shown(header: &Header) -> String {
+    Sampling::of(header).map(|s| s.to_string()).unwrap_or_default()
 }
 
 /// Wavelengths as headers have them.

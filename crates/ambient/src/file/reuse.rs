@@ -3,6 +3,7 @@
 use super::error::FileError;
 use super::fingerprint::{Comparison, Fingerprint, Gravity};
 use crate::components::Components;
+use crate::conversion::Observer;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -31,6 +32,8 @@ pub struct Opening<'a> {
     pub components: &'a Components,
     /// The wavelengths of components in nm: longest limit, red/green split, green/blue split, shortest limit.
     pub splits: [f64; 4],
+    /// Who sees the spectra of a file as red, green and blue.
+    pub observer: Observer,
     /// What the run's records depend on; `None` writes none and accepts all.
     pub fingerprint: Option<&'a Fingerprint>,
     /// What is done with records that are there.

@@ -60,14 +60,15 @@ pub fn scan(bytes: &[u8], file: &str) -> Result<Contents, String> {
     Ok(understand(bytes, header, layout, start, components))
 }
 
-/// As [`scan`], for a file that is to have such components.
-pub(super) fn scan_as(bytes: &[u8], file: &str, components: &Components) -> Result<Contents, String> {
+/// As [`scan`], but `components` says from the header where components stand; its error counts as one of the file.
+pub(super) fn scan_as(
+    bytes: &[u8],
+    file: &str,
+    components: impl FnOnce(&Header) -> Result<Components, String>,
+) -> Result<Contents, String> {
     let (header, layout, start) = scan_header(bytes, file)?;
-    let (count, expected) = (header.components() as usize, components.count());
-    if count != expected {
-        return Err(format!("NCOMP={count}, of another -cs (expected NCOMP={expected})"));
-    }
-    Ok(understand(bytes, header, layout, start, components.clone()))
+    let components = components(&header)?;
+    Ok(understand(bytes, header, layout, start, components))
 }
 
 fn understand(bytes: &[u8], header: Header, layout: Layout, start: usize, components: Components) -> Contents {

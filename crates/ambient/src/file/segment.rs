@@ -10,8 +10,11 @@
 use super::fingerprint::fingerprint_lines;
 use super::scan::{Contents, scan_as};
 use crate::codec::Layout;
+use crate::components::Components;
+use crate::conversion::Sampling;
 use crate::record::Record;
 use ambit_base::Notify;
+use ambit_file::{Header, name_of};
 use std::collections::HashSet;
 use std::ffi::OsString;
 use std::fs::File;
@@ -46,10 +49,10 @@ impl Segment {
 pub fn segments(path: &Path, main: &Contents, notify: &dyn Notify) -> Vec<Segment> {
     let mut found = Vec::new();
     for path in names(path) {
-        let shown = path.to_string_lossy().into_owned();
+        let shown = name_of(&path).into_owned();
         let contents = std::fs::read(&path)
             .map_err(|e| ambit_file::os_text(&e))
-            .and_then(|bytes| scan_as(&bytes, &shown, &main.components));
+            .and_then(|bytes| scan_as(&bytes, &shown, |header| components(header, main)));
         match contents {
             Ok(contents) if fingerprint_lines(&contents.header).eq(fingerprint_lines(&main.header)) => {
                 found.push(Segment { path, contents });
@@ -60,6 +63,14 @@ pub fn segments(path: &Path, main: &Contents, notify: &dyn Notify) -> Vec<Segmen
         }
     }
     found
+}
+
+/// Those of the file: a segment is of its wavelength sampling, whatever that of the run that wrote it.
+fn components(segment: &Header, main: &Contents) -> Result<Components, String> {
+    match (Sampling::of(segment), Sampling::of(&main.header)) {
+        (Some(a), Some(b)) if a.is_as(&b) => Ok(main.components.clone()),
+        _ => Err("it has another wavelength sampling than the file".to_owned()),
+    }
 }
 
 /// True if there are segments of the ambient file at `path`.

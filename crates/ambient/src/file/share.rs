@@ -7,7 +7,7 @@ use crate::codec::Layout;
 use crate::components::Components;
 use crate::record::Record;
 use ambit_base::Notify;
-use ambit_file::{FileLock, LockError, LockMode};
+use ambit_file::{FileLock, LockError, LockMode, name_of};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::PathBuf;
@@ -141,7 +141,7 @@ impl AmbientFile {
             let (file, records) = (self.name.clone(), self.waiting.len());
             return Err(FileError::Write { file, records, source });
         }
-        let shown = path.to_string_lossy().into_owned();
+        let shown = name_of(&path).into_owned();
         notify.warn(&format!("values go to \"{shown}\", and to \"{}\" when it can be locked again", self.name));
         self.file = Arc::new(file);
         self.name = shown;

@@ -85,6 +85,7 @@ pub(super) fn plain(header: &[String]) -> Opening<'_> {
         header,
         components: &RGB,
         splits: SPLITS,
+        observer: |_| DVec3::ONE,
         fingerprint: None,
         reuse: Reuse::Auto,
         patience: PATIENCE,
@@ -195,14 +196,15 @@ fn garbage_is_refused_and_left_alone() {
     let header = text.find("\n\n").unwrap() + 2;
     let mut old = good.clone();
     old[header + 1] = 0x2d;
-    let spectral = text.replace("NCOMP=3", "NCOMP=6").into_bytes();
+    let spectral = text.replace("NCOMP=3", "NCOMP=2").into_bytes();
     let picture = text.replace(FORMAT, "32-bit_rle_rgbe").into_bytes();
     for (bytes, problem) in [
         (b"garbage".to_vec(), "bad header"),
         (vec![0; 500], "bad header"),
         (good[..header].to_vec(), "ends after its header"),
         (old, "magic number 557"),
-        (spectral, "NCOMP=6"),
+        (spectral, "NCOMP=2"),
+        (text.replace("SPLITS= 780 588 480 380", "SPLITS= 0 0 0 0").into_bytes(), "WAVELENGTH_SPLITS"),
         (picture, "FORMAT=32-bit_rle_rgbe"),
     ] {
         fs::write(folder.file(), &bytes).unwrap();

@@ -2,7 +2,7 @@
 
 use super::tests::{Folder, Heard, RGB, SPLITS, batch, lines};
 use super::*;
-use ambit_base::Silent;
+use ambit_base::{DVec3, Silent};
 use std::fs;
 
 fn print(scene: &str, divisions: &str) -> Fingerprint {
@@ -28,6 +28,7 @@ fn run(
         header: &header,
         components: &RGB,
         splits: SPLITS,
+        observer: |_| DVec3::ONE,
         fingerprint: Some(print),
         reuse,
         patience: PATIENCE,

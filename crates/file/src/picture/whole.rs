@@ -3,6 +3,7 @@
 use super::{PictureReader, PictureWriter, PixelSpace};
 use crate::error::Error;
 use crate::header::Header;
+use crate::native::path_of;
 use crate::resolution::{Orientation, Resolution};
 use ambit_base::Rgb;
 use std::fs::File;
@@ -43,7 +44,7 @@ impl Picture {
 
     /// Reads the picture file of that name.
     pub fn open(file: &str) -> Result<Self, Error> {
-        let open = File::open(file).map_err(|e| Error::io("cannot open picture", file, e))?;
+        let open = File::open(path_of(file)).map_err(|e| Error::io("cannot open picture", file, e))?;
         Self::read(BufReader::new(open), file)
     }
 

@@ -4,6 +4,7 @@ use super::{View, ViewOption};
 use crate::command::base_name;
 use crate::error::Error;
 use crate::header::Header;
+use crate::native::path_of;
 use crate::printf::general;
 use crate::words::real;
 use ambit_base::DVec3;
@@ -96,7 +97,7 @@ impl View {
 
     /// Applies the view file (or picture) of that name.
     pub fn read_file(&mut self, file: &str, program: &str) -> Result<(), Error> {
-        let open = File::open(file).map_err(|e| Error::io("cannot open view file", file, e))?;
+        let open = File::open(path_of(file)).map_err(|e| Error::io("cannot open view file", file, e))?;
         self.read(&mut BufReader::new(open), file, program)
     }
 }

@@ -8,7 +8,7 @@ use crate::error::Problem;
 use crate::tree::{Node, Tree};
 use crate::{Cube, Error, Geometry, Limits, build};
 use ambit_base::{DVec3, EPSILON, Notify};
-use ambit_file::encode_direction;
+use ambit_file::{encode_direction, text_of};
 use ambit_scene::{Facet, Kind, NewObject, ObjectId, Scene, VOID};
 use glam::DVec2;
 
@@ -75,8 +75,7 @@ fn material_numbers(obj: &Obj, materials: &Scene, file: &str) -> Result<Vec<Opti
         if materials.is_empty() || name == b"void" {
             return Ok(None);
         }
-        let undefined =
-            || Error::UndefinedMaterial { file: file.to_owned(), material: String::from_utf8_lossy(name).into_owned() };
+        let undefined = || Error::UndefinedMaterial { file: file.to_owned(), material: text_of(name).into_owned() };
         materials.modifier(name).map(Some).ok_or_else(undefined)
     };
     obj.materials.iter().map(number).collect()

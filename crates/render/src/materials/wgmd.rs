@@ -10,6 +10,7 @@ use crate::patterns::{Compiler, Functions};
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{Colour, DVec3, EPSILON, Rgb};
+use ambit_file::text_of;
 use ambit_scene::{ObjectId, Scene};
 use std::f64::consts::PI;
 
@@ -75,7 +76,7 @@ fn own(scene: &Scene, id: ObjectId, i: usize, what: &str, absent: bool) -> Resul
             Some(modifier) => Ok(Own::Modifier(modifier)),
             None if absent => Ok(Own::Void),
             None => {
-                let name = String::from_utf8_lossy(name);
+                let name = text_of(name);
                 Err(Error::primitive(scene, id, &format!("unknown {what} modifier '{name}'")))
             }
         },

@@ -6,7 +6,7 @@ use super::spectral_image::SpectralImage;
 use crate::Error;
 use crate::materials::Distribution;
 use crate::prepare::Environment;
-use ambit_file::os_text;
+use ambit_file::{name_of, os_text};
 use ambit_scene::{DataTable, Font, ObjectId, Scene};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -44,7 +44,7 @@ impl<'e> Auxiliary<'e> {
         let environment = self.environment;
         once(&mut self.tables, name, || {
             let (path, bytes) = fetch(environment, scene, id, "data file", name)?;
-            Ok(DataTable::parse(name, &path.to_string_lossy(), &bytes)?)
+            Ok(DataTable::parse(name, &name_of(&path), &bytes)?)
         })
     }
 
@@ -53,7 +53,7 @@ impl<'e> Auxiliary<'e> {
         let environment = self.environment;
         once(&mut self.images, name, || {
             let path = find(environment, scene, id, "picture file", name)?;
-            let shown = path.to_string_lossy();
+            let shown = name_of(&path);
             let image = Image::open(&shown)
                 .map_err(|e| Error::at(scene, id, format!("bad picture file \"{shown}\"{}", e.detail())))?;
             if image.bytes() > LARGE_PICTURE {
@@ -74,7 +74,7 @@ impl<'e> Auxiliary<'e> {
                     None => Err(Error::user(format!("cannot find font file \"{name}\""))),
                 };
             };
-            let shown = path.to_string_lossy();
+            let shown = name_of(&path);
             let bytes = open(&path, "font file", name)?;
             Ok(Font::parse(&shown, &bytes)?)
         });
@@ -95,7 +95,7 @@ impl<'e> Auxiliary<'e> {
         let environment = self.environment;
         once(&mut self.distributions, name, || {
             let (path, bytes) = fetch(environment, scene, id, "BSDF file", name)?;
-            Distribution::read(&bytes, &path.to_string_lossy(), environment.notify)
+            Distribution::read(&bytes, &name_of(&path), environment.notify)
                 .map_err(|e| Error::in_file(e.text, e.location))
         })
     }
@@ -110,7 +110,7 @@ impl<'e> Auxiliary<'e> {
         let environment = self.environment;
         once(&mut self.spectral_images, name, || {
             let (path, bytes) = fetch(environment, scene, id, "hyperspectral image", name)?;
-            let shown = path.to_string_lossy();
+            let shown = name_of(&path);
             SpectralImage::parse(&bytes, &shown)
                 .map_err(|e| Error::at(scene, id, format!("bad hyperspectral image \"{shown}\" ({e})")))
         })

@@ -8,7 +8,7 @@ use crate::prepare::{Definition, Environment};
 use crate::spectral::Spectrum;
 use ambit_base::Transform;
 use ambit_cal::{ChannelSet, Context, Host, Library, Program};
-use ambit_file::os_text;
+use ambit_file::{name_of, os_text};
 use ambit_scene::{ObjectId, Scene};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -79,7 +79,7 @@ impl<'e> Compiler<'e> {
             Some(path) => {
                 let mut library = Library::new(Host::Renderer);
                 let text = read(&path, PRELUDE)?;
-                library.load_global(&path.to_string_lossy(), &text).map_err(bad)?;
+                library.load_global(&name_of(&path), &text).map_err(bad)?;
                 library
             }
             None => Library::renderer().map_err(bad)?,
@@ -101,7 +101,7 @@ impl<'e> Compiler<'e> {
                         Error::system(format!("cannot find function file \"{name}\": No such file or directory"))
                     })?;
                     let text = read(&path, name)?;
-                    compiler.library.load_global(&path.to_string_lossy(), &text).map_err(bad)?;
+                    compiler.library.load_global(&name_of(&path), &text).map_err(bad)?;
                 }
             }
         }
@@ -219,7 +219,7 @@ impl<'e> Compiler<'e> {
 
     fn load(&mut self, scene: &Scene, id: ObjectId, file: &str) -> Result<(), Error> {
         let (shown, text): (String, Cow<'static, [u8]>) = match (self.environment.find)(file) {
-            Some(path) => (path.to_string_lossy().into_owned(), read(&path, file)?.into()),
+            Some(path) => (name_of(&path).into_owned(), read(&path, file)?.into()),
             None => match ambit_cal::embedded(file) {
                 Some(text) => (file.to_owned(), text.as_bytes().into()),
                 None => return Err(Error::missing_file(scene, id, "function file", file)),

@@ -5,7 +5,7 @@
 //! as they are stored: the header's exposure is not undone.
 
 use ambit_base::{EPSILON, Rgb};
-use ambit_file::{PictureReader, PixelSpace, decode_pixel};
+use ambit_file::{PictureReader, PixelSpace, decode_pixel, path_of};
 use ambit_scene::Axis;
 use std::fs::File;
 use std::io::BufReader;
@@ -58,7 +58,7 @@ pub(crate) fn picture_axes(width: usize, height: usize, aspect: f64) -> (Axis, A
 impl Image {
     /// Reads the picture file of that path.
     pub(crate) fn open(path: &str) -> Result<Self, BadImage> {
-        let file = File::open(path).map_err(|e| ambit_file::Error::io("cannot open picture file", path, e))?;
+        let file = File::open(path_of(path)).map_err(|e| ambit_file::Error::io("cannot open picture file", path, e))?;
         let mut reader = PictureReader::new(BufReader::new(file), path)?;
         if reader.space != PixelSpace::Rgb {
             return Err(BadImage::Space);

@@ -8,6 +8,7 @@ use crate::observer::Observer;
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{Colour, EPSILON};
+use ambit_file::text_of;
 use ambit_scene::{Kind, ObjectId, Scene, TextBlock, VOID};
 
 /// A compiled mixture.
@@ -49,7 +50,7 @@ impl Mixture {
                 return Ok(VOID);
             }
             scene.modifier_before(name, id).ok_or_else(|| {
-                let name = String::from_utf8_lossy(name);
+                let name = text_of(name);
                 Error::primitive(scene, id, &format!("undefined modifier \"{name}\""))
             })
         };

@@ -2,11 +2,12 @@
 
 use crate::Error;
 use ambit_base::{Notify, Transform};
-use ambit_file::Header;
+use ambit_file::{Header, name_of, path_of};
 use ambit_octree::{Cube, Mesh};
 use ambit_scene::{Class, Kind, ObjectId, Scene, Shell};
 use std::collections::HashMap;
 use std::ops::Range;
+use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -98,9 +99,12 @@ impl Volumes {
 
 /// Loads an octree and what it refers to.
 pub fn load(source: OctreeSource, environment: &Environment<'_>) -> Result<Loaded, Error> {
-    let (name, bytes) = fetch(source, environment)?;
+    let (name, bytes, failed) = fetch(source)?;
     let mut scene = Scene::new();
     let main = read(&bytes, &name, &mut scene, environment)?;
+    if failed {
+        environment.notify.warn(&format!("bad status from \"{name}\""));
+    }
     drop(bytes);
     let top_level = main.objects();
     let mut volumes = Volumes::default();
@@ -120,25 +124,24 @@ pub fn load(source: OctreeSource, environment: &Environment<'_>) -> Result<Loade
     Ok(Loaded { scene, top_level, volumes, cube: main.cube, header: main.header })
 }
 
-fn fetch(source: OctreeSource, environment: &Environment<'_>) -> Result<(String, Vec<u8>), Error> {
+/// Name and bytes of an octree, and whether the command that made it failed: whoever gets none needs not know.
+fn fetch(source: OctreeSource) -> Result<(String, Vec<u8>, bool), Error> {
     match source {
-        OctreeSource::Bytes { name, bytes } => Ok((name, bytes)),
-        OctreeSource::File(name) => match std::fs::read(&name) {
-            Ok(bytes) => Ok((name, bytes)),
+        OctreeSource::Bytes { name, bytes } => Ok((name, bytes, false)),
+        OctreeSource::File(name) => match std::fs::read(path_of(&name)) {
+            Ok(bytes) => Ok((name, bytes, false)),
             Err(e) => Err(Error::system(format!("cannot open octree file \"{name}\": {}", reason(&e)))),
         },
         OctreeSource::Command(command) => {
             let output = std::process::Command::new("/bin/sh")
+                .arg0("sh")
                 .arg("-c")
-                .arg(&command)
+                .arg(path_of(&command))
                 .stdin(std::process::Stdio::inherit())
                 .stderr(std::process::Stdio::inherit())
                 .output()
                 .map_err(|e| Error::system(format!("cannot execute \"!{command}\": {}", reason(&e))))?;
-            if !output.status.success() {
-                environment.notify.warn(&format!("bad status from \"!{command}\""));
-            }
-            Ok((format!("!{command}"), output.stdout))
+            Ok((format!("!{command}"), output.stdout, !output.status.success()))
         }
     }
 }
@@ -178,7 +181,7 @@ fn place(
         .ok_or_else(|| Error::system(format!("cannot find {what} file \"{name}\": No such file or directory")))?;
     let bytes = std::fs::read(&path)
         .map_err(|e| Error::system(format!("cannot open {what} file \"{}\": {}", path.display(), reason(&e))))?;
-    let shown = path.to_string_lossy();
+    let shown = name_of(&path);
     let contents = if kind == Kind::Mesh {
         Contents::Mesh(Arc::new(ambit_octree::read_mesh(&bytes, &shown, scene, environment.notify)?))
     } else {

@@ -10,6 +10,7 @@ use crate::materials::{
 use crate::patterns::Compiler;
 use crate::sources::Spot;
 use ambit_base::{DVec3, EPSILON, Rgb};
+use ambit_file::text_of;
 use ambit_scene::{Kind, ObjectId, Scene, VOID};
 
 /// Compiles the material `id`; errors are those that Radiance reports when a ray first meets it.
@@ -139,7 +140,7 @@ fn antimatter(scene: &Scene, id: ObjectId, compiler: &Compiler<'_>) -> Result<Ma
         if name == b"void" {
             continue;
         }
-        let text = String::from_utf8_lossy(name);
+        let text = text_of(name);
         match scene.modifier_before(name, id) {
             None => compiler.warn(&format!("unknown modifier \"{text}\" for {}", scene.describe(id))),
             Some(m) if listed.contains(&m) => {

@@ -15,6 +15,7 @@ pub(crate) use modifiers::{Modifiers, Node};
 use crate::patterns::Complaints;
 use crate::sources::{Choice, Emitter, Lamp, Obstacles, Relay, Source, SourceId};
 use crate::{Error, Options, Selection};
+use ambit_file::bytes_of;
 use ambit_scene::{Kind, ObjectId, Scene, VOID};
 use ambit_trace::World;
 
@@ -117,7 +118,7 @@ fn left_out(scene: &Scene, selection: &Selection) -> Vec<bool> {
     };
     let listed = |id| {
         let kind = scene.object(id).kind;
-        kind.is_modifier() && names.iter().any(|n| n.as_bytes() == scene.name_bytes(id))
+        kind.is_modifier() && names.iter().any(|n| *bytes_of(n) == *scene.name_bytes(id))
     };
     scene.ids().map(|id| listed(id) == listed_out).collect()
 }

@@ -25,13 +25,9 @@ const LAMPS: u64 = 0x4c;
 const SHADOWS: u64 = 0x4d;
 
 impl<O: Observer> Walk<'_, O> {
-    /// True where a ray is one of a hemisphere's and lamps are many, so that few will do; `-dt 0` wants all, and so does who
-    /// looks on. Few lamps are better asked all: what is known to block them spares more rays than choosing would.
+    /// True where a ray is one of a hemisphere's and lamps are many, so that few will do; `-dt 0` wants all. Few lamps are better asked all: what is known to block them spares more rays than choosing would.
     pub(super) fn asks_few(&self, ray: &Ray<'_>) -> bool {
-        !O::ACTIVE
-            && self.tracer.scene.choice.has_many()
-            && ray.is_ambient()
-            && self.tracer.options.direct.threshold > 0.0
+        self.tracer.scene.choice.has_many() && ray.is_ambient() && self.tracer.options.direct.threshold > 0.0
     }
 
     /// The lamps that stand for all at a ray's hit, what lies below the plane of `above` left out. None: all.

@@ -10,6 +10,7 @@ use crate::prepare::{Environment, Prepared};
 use crate::ray::{Kinds, Ray, SourceSet, transmittance};
 use crate::walk::Walk;
 use ambit_base::{Colour, EPSILON, FAR, Rgb, mix};
+use ambit_file::text_of;
 use ambit_scene::{Kind, ObjectId, Scene};
 use std::f64::consts::PI;
 
@@ -111,7 +112,7 @@ fn named(prepared: &Prepared, mist: ObjectId, environment: &Environment<'_>) -> 
     for name in scene.strings_bytes(mist) {
         let last = (0..prepared.sources.len()).rev().find(|&s| is_called(prepared, &prepared.sources[s], name));
         let complain = |what: &str| {
-            let name = String::from_utf8_lossy(name);
+            let name = text_of(name);
             environment.notify.warn(&format!("{what} source \"{name}\" for {}", scene.describe(mist)));
         };
         match last {

@@ -48,7 +48,7 @@ impl Output {
 
 /// Prints on standard output.
 pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
+    let mut out = ambit_cli::StandardOutput::new();
     out.write_all(bytes).and_then(|()| out.flush()).map_err(|e| match e.kind() {
         io::ErrorKind::BrokenPipe => Failure::Pipe,
         _ => Failure::Text(format!("cannot write output: {}", os_text(&e))),

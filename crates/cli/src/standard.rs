@@ -1,0 +1,71 @@
+//! Standard output that tells when nothing can be written. Rust's own opens `/dev/null` in the place of one that is
+//! closed, before a program begins, and a run's results would go there without a word.
+
+use rustix::io::Errno;
+use std::fs::File;
+use std::io::{self, Write};
+use std::os::fd::AsFd;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// True if standard output was closed when the process began.
+static CLOSED: AtomicBool = AtomicBool::new(false);
+
+/// Runs before Rust's start, and does nothing but ask the system.
+#[ctor::ctor(unsafe)]
+fn look() {
+    let open = rustix::io::fcntl_getfd(rustix::stdio::stdout());
+    CLOSED.store(open.is_err(), Ordering::Relaxed);
+}
+
+/// Standard output, without a buffer.
+#[derive(Debug)]
+pub struct StandardOutput {
+    file: io::Result<File>,
+    /// A pipe that nobody reads ends the program.
+    ends: bool,
+}
+
+impl StandardOutput {
+    /// The process's own. That it is closed shows when something is written.
+    pub fn new() -> Self {
+        let closed = CLOSED.load(Ordering::Relaxed);
+        let open = || io::stdout().as_fd().try_clone_to_owned().map(File::from);
+        Self { file: if closed { Err(Errno::BADF.into()) } else { open() }, ends: false }
+    }
+
+    /// The same, but when it is a pipe that nobody reads any more, the program ends without a word, as by a signal that
+    /// it does not handle.
+    pub fn ending() -> Self {
+        Self { ends: true, ..Self::new() }
+    }
+}
+
+impl Default for StandardOutput {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Write for StandardOutput {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = match &mut self.file {
+            Ok(file) => file.write(bytes),
+            Err(_) if bytes.is_empty() => Ok(0),
+            Err(e) => Err(e.raw_os_error().map_or_else(|| e.kind().into(), io::Error::from_raw_os_error)),
+        };
+        if self.ends && written.as_ref().is_err_and(|e| e.kind() == io::ErrorKind::BrokenPipe) {
+            // It comes back only if the system refuses.
+            let _ = signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGPIPE);
+        }
+        written
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Prints a text that a program answers with instead of working. Who cannot read it misses nothing, and no error tells.
+pub fn answer(text: &[u8]) {
+    let _ = StandardOutput::ending().write_all(text);
+}
