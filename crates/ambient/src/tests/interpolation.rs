@@ -165,6 +165,23 @@ fn the_corral_is_probed_in_its_azimuths_only() {
 }
 
 #[test]
+fn own_records_smooth_a_little_beyond_their_reach() {
+    // The reach along u is 0.1; at 0.11 from one and 0.03 from the other. Hats over 1.25 times the reach weigh 0.12 and 0.76.
+    let own = |r: Record| Record { late: Box::new([[Rgb::ZERO; 2]]), ..r };
+    let a = Record { value: Rgb::new(1.0, 0.0, 2.0), ..record() };
+    let b = Record { position: DVec3::new(0.14, 0.0, 0.0), value: Rgb::new(0.0, 1.0, 4.0), ..record() };
+    let q = query(0.11, 0.0, 0.0);
+    let of = |x: Rgb, y: Rgb, share: f32| x * share + y * (1.0 - share);
+    let near = |found: Option<Rgb>, v: Rgb| found.is_some_and(|f| (f - v).abs().max_element() < 1e-5);
+    assert!(near(answer(&[own(a.clone()), own(b.clone())], &OPEN, &q), of(a.value, b.value, 0.12 / 0.88)));
+    assert!(near(answer(&[a.clone(), own(b.clone())], &OPEN, &q), b.value), "records from files do as in Radiance");
+    assert!(answer(&[own(a.clone())], &OPEN, &q).is_none(), "it alone is no answer");
+    let deep = |r: Record| own(Record { level: 1, ..r });
+    let deeper = Query { level: 1, ..q };
+    assert!(near(answer(&[deep(a), deep(b.clone())], &OPEN, &deeper), b.value), "deeper questions are not smoothed");
+}
+
+#[test]
 fn positions_outside_the_cube_are_found() {
     let outside = DVec3::new(2.5, -7.0, 0.3);
     let r = Record { position: outside, ..record() };
