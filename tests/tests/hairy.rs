@@ -1,5 +1,5 @@
 //! How many records there are: `--measured-reuse` on thousands of blades in a box, against the answers without a cache,
-//! and `--overlap`.
+//! `--overlap` and `--smoothing`.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -155,5 +155,50 @@ fn overlap_is_an_option() {
     for wrong in ["--overlap 1", "--overlap -.1"] {
         let answer = run(wrong);
         assert!(answer.status == Some(1) && answer.err.contains("'--overlap'"), "{wrong}: {}", answer.err);
+    }
+}
+
+/// Values smooth each other unless that is switched off, or their file is not of this program.
+#[test]
+fn smoothing_is_an_option_and_spares_the_files_of_others() {
+    if foreign() {
+        return;
+    }
+    let scratch = tempfile::tempdir().expect("a scratch folder can be made");
+    let octree = ambit_tests::Fixture::named("cornell").compile(scratch.path());
+    let point = |k: u32| format!("{} {} .001 0 0 1", 0.08 + 0.04 * f64::from(k % 20), 0.08 + 0.04 * f64::from(k / 20));
+    let grid: Vec<String> = (0..400).map(point).collect();
+    let grid = grid.join(
+        "
+",
+    ) + "
+";
+    let file = |name: &str| scratch.path().join(name);
+    let run = |line: &str, name: &str| {
+        let program = Program::new("rtrace").line("-h -w- -I -ab 1 -ad 64 -as 0 -aa .3 -ar 64").line(line);
+        program.arg("-af").arg(file(name)).arg(&octree).feed(grid.as_bytes())
+    };
+    run("", "own.amb").well("making the file");
+    let smooth = run("--reuse read-only", "own.amb").well("reading it").out;
+    let numbers = |text: &[u8]| -> Vec<f64> {
+        String::from_utf8_lossy(text).split_whitespace().map(|w| w.parse().expect("a number")).collect()
+    };
+    let apart = |a: &[u8], b: &[u8]| {
+        let (a, b) = (numbers(a), numbers(b));
+        a.iter().zip(&b).map(|(a, b)| (a - b).abs() / b).fold(0.0, f64::max)
+    };
+    let plain = run("--smoothing 1 --reuse append", "own.amb").well("without smoothing").out;
+    assert!(apart(&plain, &smooth) > 1e-3, "smoothing does something");
+    // The same file as if Radiance had made it.
+    let bytes = std::fs::read(file("own.amb")).expect("the file is there");
+    let end = bytes.windows(2).position(|w| w == b"\n\n").expect("a header ends");
+    let lines = bytes[..end].split(|&b| b == b'\n').filter(|line| !line.starts_with(b"AMBIT_"));
+    let header = lines.collect::<Vec<_>>().join(&b'\n');
+    std::fs::write(file("other.amb"), [&header, &bytes[end..]].concat()).expect("it can be written");
+    let other = run("", "other.amb").well("with a file of another program").out;
+    assert!(apart(&other, &plain) < 1e-6, "{}", apart(&other, &plain));
+    for wrong in ["--smoothing .9", "--smoothing 3"] {
+        let answer = run(wrong, "own.amb");
+        assert!(answer.status == Some(1) && answer.err.contains("'--smoothing'"), "{wrong}: {}", answer.err);
     }
 }

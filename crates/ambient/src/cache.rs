@@ -105,6 +105,11 @@ impl Cache {
         self.quantised = Some(components);
     }
 
+    /// Uses records as far as they reach and no farther, as Radiance does: for those of its files.
+    pub fn smooth_nothing(&mut self) {
+        self.limits.smoothing = 1.0;
+    }
+
     /// Takes in records from a file. Implausible ones and duplicates are dropped; returns how many.
     pub fn load(&mut self, records: impl IntoIterator<Item = Record>) -> usize {
         let mut dropped = 0;
@@ -133,7 +138,7 @@ impl Cache {
             let radius = reins.allowed(record.position, unwidened(&record));
             clamp(&mut record, radius);
         }
-        if !self.store.insert(&record, self.params.accuracy.max(0.0)) {
+        if !self.store.insert(&record, &self.limits) {
             return false;
         }
         self.average.add(record.values());

@@ -3,17 +3,6 @@
 use crate::light::Light;
 use crate::record::Record;
 
-/// How far beyond its reach a record still smooths what the eye sees, as a multiple of its reach. Where records must be
-/// made their reach alone decides; but most of the error of a value is the noise of hemispheres, and more of them make it
-/// less. Wider yet, errors of interpolation take over in corners.
-pub(crate) const SMOOTHING: f32 = 1.25;
-
-/// How far beyond its reach a record smooths that is made here. Of deeper questions hundreds make one value, which needs no
-/// smoothing.
-pub(crate) fn smoothing(level: u8) -> f32 {
-    if level == 0 { SMOOTHING } else { 1.0 }
-}
-
 /// Two lines of the processor's cache: where a record is valid, which every comparison reads, and what it answers, which
 /// is read once it qualifies.
 #[derive(Clone, Copy, Debug)]
@@ -26,8 +15,6 @@ pub(crate) struct Entry {
     pub(crate) weight: f32,
     pub(crate) level: u8,
     pub(crate) corralled: bool,
-    /// It is used as far as [`SMOOTHING`]; those from ambient files answer as in Radiance.
-    pub(crate) smooths: bool,
 
     pub(crate) gradient: [f32; 2],
     pub(crate) rotation: [f32; 2],
@@ -47,7 +34,6 @@ impl Entry {
             weight: record.weight,
             level: record.level,
             corralled: record.corral != 0,
-            smooths: record.level == 0 && record.is_own(),
             gradient: record.gradient,
             rotation: record.rotation,
             corral: record.corral,

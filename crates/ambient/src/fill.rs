@@ -89,6 +89,9 @@ impl Cache {
         let mut values = vec![Light::NONE; queries.len()];
         let mut picked = vec![false; queries.len()];
         let mut exempt = vec![false; queries.len()];
+        // Whose hemispheres are the whole answer: all, unless records smooth each other.
+        let mut whole = vec![false; queries.len()];
+        let smooth = level == 0 && limits.smoothing > 1.0;
         let mut open: Vec<usize> = (0..queries.len()).collect();
         let mut apart = limits.accuracy * limits.max_radius;
         let least = 0.5 * limits.accuracy * limits.min_radius;
@@ -103,7 +106,7 @@ impl Cache {
         };
         while !open.is_empty() {
             for q in self.rent(sampler, level, queries, &mut open, &mut values) {
-                picked[q] = true;
+                (picked[q], whole[q]) = (true, true);
             }
             if open.is_empty() {
                 break;
@@ -117,6 +120,7 @@ impl Cache {
             for (k, outcome) in outcomes.iter().enumerate() {
                 picked[picks[k]] = true;
                 wasted[k] = !matches!(outcome, Outcome::Record(..));
+                whole[picks[k]] = wasted[k] || !smooth;
             }
             // Those that waited for a record that could not be stored need not keep away from it again.
             for (query, pick) in blocked {
@@ -147,7 +151,7 @@ impl Cache {
         }
         // The round's records alone gave a provisional answer; all of them give the final one.
         let last = self.steps.in_order(queries.len(), FEW, FEW / 2, |q| {
-            if picked[q] { None } else { self.answer(&self.store.lookup(&limits, sampler, &queries[q]), level) }
+            if whole[q] { None } else { self.answer(&self.store.lookup(&limits, sampler, &queries[q]), level) }
         });
         for (value, last) in values.iter_mut().zip(last) {
             *value = last.unwrap_or(*value);
@@ -196,7 +200,7 @@ impl Cache {
                     let sum = delta.lookup(&self.limits, sampler, &queries[q]);
                     let covered = sum.answer().is_some() && sum.is_enough(self.params.enough(record.level));
                     if !covered && self.insert(record.clone()) {
-                        delta.insert(record, self.params.accuracy);
+                        delta.insert(record, &self.limits);
                     }
                     *value
                 }
@@ -211,7 +215,7 @@ impl Cache {
             // Those of this round may have reined each other in.
             delta = self.store.emptied();
             for record in &self.records()[first..] {
-                delta.insert(record, self.params.accuracy);
+                delta.insert(record, &self.limits);
             }
         }
         delta

@@ -5,7 +5,6 @@ use crate::components::Components;
 use crate::corral::{border, corral};
 use crate::derivatives::Derivatives;
 use crate::edges::Points;
-use crate::entry::smoothing;
 use crate::grid::Grid;
 use crate::hemisphere::Hemisphere;
 use crate::light::Light;
@@ -117,8 +116,7 @@ pub(crate) fn finish<O>(
         Grid::Polar { .. } => split(limits, weight, grid, cells, lit),
     };
     let rotation = turned(rotation, shape.turn);
-    let used = limits.accuracy * f64::from(smoothing(query.level));
-    let reach = shape.radii.map(|r| r * used);
+    let reach = shape.radii.map(|r| r * limits.used(query.level));
     let frame = plan.frame();
     let (s, c) = shape.turn.sin_cos();
     let u = frame.u * c + frame.v * s;

@@ -2,7 +2,7 @@
 //! product of two hat functions (Schwarzhaupt, Jensen, Jarosz 2012 for the ellipse) and first-order extrapolation
 //! (Ward & Heckbert 1992, *Irradiance Gradients*).
 
-use crate::entry::{Entry, SMOOTHING};
+use crate::entry::Entry;
 use crate::light::Light;
 use crate::params::Limits;
 use crate::sampler::{Query, Sampler};
@@ -32,8 +32,8 @@ pub(crate) struct Asked {
     angle: f32,
     pub(crate) opened: f32,
     accuracy: f32,
-    /// The same, for records that smooth.
-    widened: f32,
+    /// The same, widened for smoothing.
+    used: f32,
     /// How far below a record's plane a query may lie.
     behind: f32,
     rounding: f32,
@@ -53,7 +53,7 @@ impl Asked {
             angle: limits.max_angle as f32,
             opened: limits.opened_angle(query.weight) as f32,
             accuracy: limits.accuracy as f32,
-            widened: limits.accuracy as f32 * SMOOTHING,
+            used: limits.used(query.level) as f32,
             behind: (limits.min_radius * limits.accuracy + rounding) as f32,
             rounding: rounding as f32,
             spare_reach: (0.5 * limits.min_radius * limits.accuracy) as f32,
@@ -108,8 +108,7 @@ pub(crate) fn accumulate<S: Sampler>(
     query: &Query<S::Origin>,
     sum: &mut Sum,
 ) -> f32 {
-    let used = if entry.smooths { asked.widened } else { asked.accuracy };
-    let a2 = used * used;
+    let a2 = asked.used * asked.used;
     let delta = asked.position - DVec3::from_array(entry.position);
     let d = delta.as_vec3();
     let d2 = d.length_squared();
@@ -154,7 +153,7 @@ pub(crate) fn accumulate<S: Sampler>(
     }
     let (facing, reach) = (1.0 - tilt2.sqrt() / angle, reach2.sqrt());
     let weight = facing * (1.0 - reach / asked.accuracy).max(0.0);
-    let smooth = facing * (1.0 - reach / used);
+    let smooth = facing * (1.0 - reach / asked.used);
     sum.weight += weight;
     sum.smooth += smooth;
     sum.light += light() * (factor.min(MAX_FACTOR) * smooth);

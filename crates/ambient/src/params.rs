@@ -14,6 +14,10 @@ pub const OVERLAP: f32 = 0.3;
 /// through a file.
 pub const MOST_OVERLAP: f32 = 0.9;
 
+/// The [`Params::smoothing`] unless another is asked for. Most of the error of a value is the noise of hemispheres, which more
+/// records lessen; wider yet, errors of interpolation take over in corners.
+pub const SMOOTHING: f32 = 1.25;
+
 /// The options of the diffuse indirect calculation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
@@ -38,6 +42,9 @@ pub struct Params {
     /// reach from each other, where picks far apart leave gaps of up to twice that: 0.2 makes about as many. More
     /// than [`MOST_OVERLAP`] counts as that.
     pub overlap: f32,
+    /// How far records count in means of level 0, as a multiple of their reach, at least 1 (which is Radiance's); their reach
+    /// alone decides where records must be made. Of deeper questions hundreds make one value, which needs no smoothing.
+    pub smoothing: f32,
     /// Passes of a calculation by wavelength, at least 1: colours of a record.
     pub passes: u8,
     /// Names the set of random numbers; two runs with equal seeds agree in every bit.
@@ -94,6 +101,7 @@ impl Default for Params {
             weight: 0,
             min_weight: 1e-4,
             overlap: 0.0,
+            smoothing: 1.0,
             passes: 1,
             seed: 0,
             systems: Systems::default(),
@@ -144,12 +152,19 @@ pub struct Limits {
     pub unit: f64,
     /// Records weigh what the asking ray does.
     pub actual_weights: bool,
+    /// How far records of level 0 count, as a multiple of their reach.
+    pub smoothing: f32,
 }
 
 /// The angle two normals may always differ by, radians; the tolerance is added to it.
 const BASE_ANGLE: f64 = 10.0 * std::f64::consts::PI / 180.0;
 
 impl Limits {
+    /// How far records of a level count: a multiple of their radii.
+    pub(crate) fn used(&self, level: u8) -> f64 {
+        if level == 0 { self.accuracy * f64::from(self.smoothing) } else { self.accuracy }
+    }
+
     /// Limits for a scene whose cube has the given edge.
     ///
     /// The smallest radius is `edge / resolution`, the largest 64 times that but at most a fifth of the edge. A smallest
@@ -177,6 +192,7 @@ impl Limits {
             max_angle: BASE_ANGLE + params.accuracy,
             unit,
             actual_weights: params.systems.actual_weights,
+            smoothing: params.smoothing.max(1.0),
         }
     }
 

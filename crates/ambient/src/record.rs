@@ -71,11 +71,6 @@ impl Record {
         Self { late: self.late.iter().enumerate().map(rounded).collect(), ..kept }
     }
 
-    /// False for records from ambient files, of which less is known.
-    pub(crate) fn is_own(&self) -> bool {
-        !self.late.is_empty()
-    }
-
     /// Irradiance/π in each pass.
     pub fn values(&self) -> impl Iterator<Item = Rgb> {
         std::iter::once(self.value).chain(self.further.iter().copied())

@@ -7,7 +7,7 @@
 //! Everything lies in flat arrays: the lists are runs of columns that are compared several records at a time; what
 //! passes is tested on the record itself, and its value read last.
 
-use crate::entry::{Entry, SMOOTHING, light_of};
+use crate::entry::{Entry, light_of};
 use crate::light::Light;
 use crate::lookup::{Asked, Sum, accumulate};
 use crate::params::Limits;
@@ -87,15 +87,15 @@ impl Store {
     }
 
     /// Files a record in the cells of its reach. False if an equal one is there already.
-    pub(crate) fn insert(&mut self, record: &Record, accuracy: f64) -> bool {
+    pub(crate) fn insert(&mut self, record: &Record, limits: &Limits) -> bool {
         let entry = Entry::of(record, self.apart);
-        let reach = f64::from(record.radii[1]) * accuracy * if entry.smooths { f64::from(SMOOTHING) } else { 1.0 };
+        let reach = f64::from(record.radii[1]) * limits.used(record.level);
         let (mut edge, mut depth) = (self.edge, 0u32);
         while edge * 0.5 > reach && depth < MAX_DEPTH {
             edge *= 0.5;
             depth += 1;
         }
-        if self.is_duplicate(record, &entry, depth, accuracy) {
+        if self.is_duplicate(record, &entry, depth, limits.accuracy) {
             return false;
         }
         let id = self.entries.len() as u32;

@@ -6,6 +6,9 @@ use crate::rendering::Rendering;
 use crate::table::{Place, Row};
 use ambit_render::{Bounces, MOST_OVERLAP, Spacing};
 
+/// Beyond it, values of other walls' corners come in.
+const MOST_SMOOTHING: f32 = 2.0;
+
 /// The rows of `--unbiased`, its parts, and the systems of the irradiance cache.
 pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
     fn light<S: Carries<Rendering>>(s: &mut S) -> &mut Rendering {
@@ -82,6 +85,21 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
              is seen directly; 0 (as in Radiance, whose pixels come in another order: any) to 0.9; .3 unless given",
         )
         .values("WEIGHT"),
+        Row::new(
+            "-smoothing",
+            Place::Reals(1, |s: &mut S, factor| {
+                let factor = factor[0] as f32;
+                if !(1.0..=MOST_SMOOTHING).contains(&factor) {
+                    let text = format!("command line error at '--smoothing': {factor} (expected 1 to {MOST_SMOOTHING})");
+                    return Err(Failure::user(text));
+                }
+                light(s).options.ambient.smoothing = factor;
+                Ok(())
+            }),
+            "how far irradiance values count in what is seen directly, as a multiple of their reach, once there are enough \
+             within it; 1 (as in Radiance, and with its ambient files whatever is given) to 2; 1.25 unless given",
+        )
+        .values("FACTOR"),
         Row::new(
             "-spacing",
             Place::Word(|s: &mut S, how, _| {

@@ -320,6 +320,7 @@ fn option_marks(options: &Options, edge: f64, relays: bool) -> Vec<Mark> {
             if a.unbounded || a.systems.bounces == Bounces::Mixed { "mixed" } else { "apart" }.to_owned(),
         ),
         slight("overlap", "--overlap", g(f64::from(a.overlap))),
+        slight("smoothing", "--smoothing", g(f64::from(a.smoothing))),
         slight("measured", "--measured-reuse", switch(a.systems.measured_reuse)),
     ]
 }

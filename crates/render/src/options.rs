@@ -1,7 +1,7 @@
 //! Every parameter of a calculation, complete and typed: what the rendering options of `rpict` and `rtrace` set.
 
 use crate::spectral::Spectrum;
-use ambit_ambient::{OVERLAP, Systems};
+use ambit_ambient::{OVERLAP, SMOOTHING, Systems};
 use ambit_base::Rgb;
 
 /// Parameters shared by all programs that trace light.
@@ -85,6 +85,8 @@ pub struct Ambient {
     pub exact_textures: bool,
     /// `--overlap`: the weight of records that a question from the eye asks for, 0 (any) to 0.9.
     pub overlap: f32,
+    /// `--smoothing`: how far records count in what the eye sees, as a multiple of their reach, 1 to 2.
+    pub smoothing: f32,
     /// Systems of the cache that Radiance does not have.
     pub systems: Systems,
 }
@@ -149,6 +151,7 @@ impl Options {
                 unbounded: false,
                 exact_textures: false,
                 overlap: OVERLAP,
+                smoothing: SMOOTHING,
                 systems: Systems::default(),
             },
             medium: Medium { extinction: Rgb::ZERO, albedo: Rgb::ZERO, eccentricity: 0.0, sampling: 0.0 },

@@ -232,6 +232,7 @@ fn params(options: &Options, passes: usize) -> Params {
         weight: a.weight,
         min_weight: options.limits.weight,
         overlap: a.overlap,
+        smoothing: a.smoothing,
         passes: passes as u8,
         seed: options.seed,
         // Without an end to bounces none is the last.

@@ -43,6 +43,9 @@ impl Renderer {
         let opened = AmbientFile::open(path, &opening, notify).map_err(|e| failed(&e))?;
         let cache = self.cache_mut();
         cache.quantise(components.clone());
+        if opened.foreign {
+            cache.smooth_nothing();
+        }
         cache.load(opened.records);
         let handed = cache.records().len();
         self.sharing = opened.file.map(|file| Sharing { file, handed, trouble: false });

@@ -33,10 +33,12 @@ pub struct Opened {
     pub records: Vec<Record>,
     /// The file to append to; none if it cannot be written, of which a warning has told.
     pub file: Option<AmbientFile>,
+    /// Another program made the file.
+    pub foreign: bool,
 }
 
 impl Opened {
-    const NOTHING: Self = Self { records: Vec::new(), file: None };
+    const NOTHING: Self = Self { records: Vec::new(), file: None, foreign: false };
 }
 
 /// An ambient file on its way to being opened.
@@ -165,7 +167,7 @@ impl Entry<'_> {
         let (name, spare) = (self.name.clone(), self.spare(head));
         let (layout, components) = (Layout::CURRENT, self.opening.components.clone());
         let file = AmbientFile { file, name, layout, components, start, end: start, locks, waiting: Vec::new(), spare };
-        Ok(Opened { records: Vec::new(), file: Some(file) })
+        Ok(Opened { records: Vec::new(), file: Some(file), foreign: false })
     }
 
     /// Locks a file of this entry; `None` if there are no locks to be had.
@@ -262,6 +264,7 @@ impl Entry<'_> {
     /// Goes on with a file that was read as its fingerprint allows.
     fn taken(&self, found: Existing, file: Arc<File>) -> Opened {
         let Existing { contents, verdict, end, locked } = found;
+        let foreign = is_foreign(&contents);
         match verdict {
             Verdict::Leave(list) => self.left(&contents, &list),
             Verdict::Use(warning) => {
@@ -277,7 +280,7 @@ impl Entry<'_> {
                 let locks = if locked { Locks::Within(self.opening.patience) } else { Locks::Broken };
                 let file =
                     AmbientFile { file, name, layout, components, start, end, locks, waiting: Vec::new(), spare };
-                Opened { records, file: Some(file) }
+                Opened { records, file: Some(file), foreign }
             }
         }
     }
@@ -331,7 +334,8 @@ impl Entry<'_> {
                     let found = contents.records.len();
                     self.notify.warn(&format!("loaded {found} values from read-only ambient file"));
                 }
-                Ok(Opened { records: contents.records, file: None })
+                let foreign = is_foreign(&contents);
+                Ok(Opened { records: contents.records, file: None, foreign })
             }
         }
     }
@@ -419,4 +423,9 @@ impl AmbientFile {
         Entry { path: Path::new("a.amb"), name, opening, notify, beside: false, lockless: Cell::new(false) }
             .read_only(file)
     }
+}
+
+/// True of files without the lines that this program writes into their headers.
+fn is_foreign(contents: &Contents) -> bool {
+    super::fingerprint_lines(&contents.header).next().is_none()
 }

@@ -34,7 +34,7 @@ fn run(
         patience: PATIENCE,
         owner: "test-1",
     };
-    let Opened { records, file } = AmbientFile::open(&folder.file(), &opening, &heard)?;
+    let Opened { records, file, .. } = AmbientFile::open(&folder.file(), &opening, &heard)?;
     if let Some(mut file) = file {
         file.append(&batch(added.start, added.len() as u32), &Silent)?;
         file.sync(&Silent)?;

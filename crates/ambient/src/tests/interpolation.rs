@@ -62,11 +62,15 @@ fn query(x: f64, y: f64, z: f64) -> Query<()> {
 }
 
 fn answer(records: &[Record], wall: &Wall, query: &Query<()>) -> Option<Rgb> {
+    answer_within(&limits(), records, wall, query)
+}
+
+fn answer_within(limits: &Limits, records: &[Record], wall: &Wall, query: &Query<()>) -> Option<Rgb> {
     let mut store = Store::new(DVec3::splat(-2.0), 4.0, 1, false);
     for r in records {
-        assert!(store.insert(r, 0.2));
+        assert!(store.insert(r, limits));
     }
-    store.lookup(&limits(), wall, query).answer().map(|light| light.value)
+    store.lookup(limits, wall, query).answer().map(|light| light.value)
 }
 
 fn accepts(record: &Record, query: &Query<()>) -> bool {
@@ -165,20 +169,21 @@ fn the_corral_is_probed_in_its_azimuths_only() {
 }
 
 #[test]
-fn own_records_smooth_a_little_beyond_their_reach() {
+fn records_smooth_a_little_beyond_their_reach() {
     // The reach along u is 0.1; at 0.11 from one and 0.03 from the other. Hats over 1.25 times the reach weigh 0.12 and 0.76.
-    let own = |r: Record| Record { late: Box::new([[Rgb::ZERO; 2]]), ..r };
+    let smooth = Limits { smoothing: 1.25, ..limits() };
     let a = Record { value: Rgb::new(1.0, 0.0, 2.0), ..record() };
     let b = Record { position: DVec3::new(0.14, 0.0, 0.0), value: Rgb::new(0.0, 1.0, 4.0), ..record() };
     let q = query(0.11, 0.0, 0.0);
-    let of = |x: Rgb, y: Rgb, share: f32| x * share + y * (1.0 - share);
+    let of = |share: f32| a.value * share + b.value * (1.0 - share);
     let near = |found: Option<Rgb>, v: Rgb| found.is_some_and(|f| (f - v).abs().max_element() < 1e-5);
-    assert!(near(answer(&[own(a.clone()), own(b.clone())], &OPEN, &q), of(a.value, b.value, 0.12 / 0.88)));
-    assert!(near(answer(&[a.clone(), own(b.clone())], &OPEN, &q), b.value), "records from files do as in Radiance");
-    assert!(answer(&[own(a.clone())], &OPEN, &q).is_none(), "it alone is no answer");
-    let deep = |r: Record| own(Record { level: 1, ..r });
+    let ask = |records: &[Record], limits: &Limits, q: &Query<()>| answer_within(limits, records, &OPEN, q);
+    assert!(near(ask(&[a.clone(), b.clone()], &smooth, &q), of(0.12 / 0.88)));
+    assert!(near(ask(&[a.clone(), b.clone()], &limits(), &q), b.value), "as in Radiance");
+    assert!(ask(std::slice::from_ref(&a), &smooth, &q).is_none(), "it alone is no answer");
+    let deep = |r: &Record| Record { level: 1, ..r.clone() };
     let deeper = Query { level: 1, ..q };
-    assert!(near(answer(&[deep(a), deep(b.clone())], &OPEN, &deeper), b.value), "deeper questions are not smoothed");
+    assert!(near(ask(&[deep(&a), deep(&b)], &smooth, &deeper), b.value), "deeper questions are not smoothed");
 }
 
 #[test]
@@ -212,7 +217,7 @@ fn every_record_in_reach_is_found_if_need_be() {
         })
         .collect();
     for r in &records {
-        assert!(store.insert(r, 0.2));
+        assert!(store.insert(r, &limits()));
     }
     let (mut answered, mut some) = (0, 0);
     for k in 0..2000 {
