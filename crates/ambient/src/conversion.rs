@@ -15,9 +15,9 @@ use std::ops::Range;
 pub type Observer = fn(&Range<f64>) -> DVec3;
 
 /// Significant digits of wavelengths.
-const DIGITS: usize = 6;
+pub(crate) const DIGITS: usize = 6;
 /// The wavelengths of a file that does not tell.
-const SPLITS: [f64; 4] = [780.0, 588.0, 480.0, 380.0];
+pub(crate) const SPLITS: [f64; 4] = [780.0, 588.0, 480.0, 380.0];
 
 /// Bins of equal width, from long to short wavelengths.
 #[derive(Clone, Copy, Debug)]

@@ -13,7 +13,7 @@ const CREVICE: f64 = 0.9;
 
 /// The bits of a record: `point` gives the sample directions in the frame (tangential components suffice), `nearness`
 /// the reciprocal distances of the closest sample of each cell; `reach` are the radii along the axes turned by `turn`,
-/// times the tolerance.
+/// times the tolerance, and `smoothing` how much farther the record counts.
 ///
 /// Radiance skips occluders nearer than R₋a + 0.001, since its probe would reject the record at its own place; the
 /// look-up here accepts coincident queries without a probe, so the nearest occluders count too.
@@ -22,6 +22,7 @@ pub(crate) fn corral(
     point: impl Fn(usize) -> DVec3,
     nearness: impl Fn(usize) -> f64,
     reach: [f64; 2],
+    smoothing: f64,
     turn: f64,
 ) -> u32 {
     if grid.side() < MIN_SIDE {
@@ -42,7 +43,7 @@ pub(crate) fn corral(
         }
         let azimuth = p.y.atan2(p.x) - turn;
         let (s, c) = azimuth.sin_cos();
-        if near * (reach[0] * c).hypot(reach[1] * s) > 1.0 {
+        if near * smoothing * (reach[0] * c).hypot(reach[1] * s) > 1.0 {
             let (first, last) = (sector_of_angle(azimuth - spread), sector_of_angle(azimuth + spread));
             let mut k = first;
             bits |= 1 << k;
@@ -79,7 +80,7 @@ mod tests {
             .collect();
         // A wall at x = 0.1: distance 0.1/p where p > 0.
         let nearness: Vec<f64> = points.iter().map(|p| (p.x / 0.1).max(0.0)).collect();
-        let bits = corral(Grid::Disk { side: 32 }, |c| points[c], |c| nearness[c], [0.2, 0.2], 0.0);
+        let bits = corral(Grid::Disk { side: 32 }, |c| points[c], |c| nearness[c], [0.2, 0.2], 1.0, 0.0);
         // cos φ > 0.1/0.2, so azimuths within ±60°: sectors 27…31 and 0…5, those at the ends cut by the border's tilt.
         for k in [0, 1, 2, 3, 28, 29, 30, 31] {
             assert!(bits >> k & 1 == 1, "sector {k} of {bits:032b}");
@@ -88,11 +89,11 @@ mod tests {
             assert!(bits >> k & 1 == 0, "sector {k} of {bits:032b}");
         }
         // Turned axes: the wall moves from azimuth 0 to −90°.
-        let turned = corral(Grid::Disk { side: 32 }, |c| points[c], |c| nearness[c], [0.2, 0.2], PI / 2.0);
+        let turned = corral(Grid::Disk { side: 32 }, |c| points[c], |c| nearness[c], [0.2, 0.2], 1.0, PI / 2.0);
         assert_eq!(turned, bits.rotate_right(8));
-        assert_eq!(corral(Grid::Disk { side: 32 }, |c| points[c], |c| nearness[c], [0.01, 0.01], 0.0), 0);
+        assert_eq!(corral(Grid::Disk { side: 32 }, |c| points[c], |c| nearness[c], [0.01, 0.01], 1.0, 0.0), 0);
         let ceiling = vec![100.0; n * n];
-        assert_eq!(corral(Grid::Disk { side: 32 }, |c| points[c], |c| ceiling[c], [0.2, 0.2], 0.0), 0);
+        assert_eq!(corral(Grid::Disk { side: 32 }, |c| points[c], |c| ceiling[c], [0.2, 0.2], 1.0, 0.0), 0);
     }
 
     #[test]

@@ -116,7 +116,8 @@ pub(crate) fn finish<O>(
         Grid::Polar { .. } => split(limits, weight, grid, cells, lit),
     };
     let rotation = turned(rotation, shape.turn);
-    let reach = shape.radii.map(|r| r * limits.used(query.level));
+    let reach = shape.radii.map(|r| r * limits.accuracy);
+    let smoothing = limits.used(query.level) / limits.accuracy;
     let frame = plan.frame();
     let (s, c) = shape.turn.sin_cos();
     let u = frame.u * c + frame.v * s;
@@ -129,7 +130,7 @@ pub(crate) fn finish<O>(
         radii: shape.radii.map(|r| r as f32),
         gradient: shape.gradient.map(|g| g as f32),
         rotation: rotation.map(|h| h as f32),
-        corral: corral(grid, |c| plan.local(c), |c| cells[c].nearness, reach, shape.turn),
+        corral: corral(grid, |c| plan.local(c), |c| cells[c].nearness, reach, smoothing, shape.turn),
         value: lights[0].value,
         further: lights[1..].iter().map(|light| light.value).collect(),
         late: lights.iter().map(|light| light.late).collect(),

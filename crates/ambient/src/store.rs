@@ -23,7 +23,7 @@ const GOOD_ENOUGH: f32 = 0.05;
 pub(crate) const ENOUGH: f32 = 0.25;
 /// Depth at which insertion stops whatever the radius: below it cells differ by less than the rounding of coordinates.
 const MAX_DEPTH: u32 = 48;
-/// Relative margin between the two ways of finding a cell.
+/// Relative margin for the rounding of a position plus its reach.
 const MARGIN: f64 = 1e-9;
 /// Records nearer than this fraction of their reach, with equal level, weight and normal, are duplicates.
 const DUPLICATE: f64 = 1e-4;

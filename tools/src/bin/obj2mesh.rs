@@ -2,7 +2,7 @@
 
 use ambit_base::Notify;
 use ambit_cli::{Class, ConsoleMessages, Failure, VERSION};
-use ambit_file::{Header, command_line, path_of};
+use ambit_file::{Header, bytes_of, command_line, path_of};
 use ambit_octree::{Error, Limits, MESH_LIMITS, compile_mesh};
 use ambit_scene::{ErrorClass, Reader, Scene, Shell};
 use std::fs::File;
@@ -122,7 +122,7 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Failure> {
     }
     let mut header = Header::empty();
     header.push("#?RADIANCE");
-    header.push(command_line(program.as_bytes(), &arguments[..request.told]));
+    header.push(command_line(&bytes_of(program), arguments[..request.told].iter().map(|word| bytes_of(word))));
     match &request.output {
         Some(file) => {
             let file = File::create(path_of(file)).map_err(|e| Failure::system("cannot open output file", &e))?;

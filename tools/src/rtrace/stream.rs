@@ -95,6 +95,10 @@ impl Stream {
             }
             if let Some(tree) = tree {
                 for request in &requests {
+                    // Trees can be large; but what was read before the input ended is answered.
+                    if !end {
+                        light.check()?;
+                    }
                     let answer = show(request, tree, &mut bytes, light, out)?;
                     records.write_all(&mut bytes, &[answer], light.spectra(), &|id| light.name(id));
                     before = (answer.origin, answer.direction);
@@ -113,7 +117,7 @@ impl Stream {
             if zero {
                 records.write_bogus(&mut bytes, before, &|id| light.name(id));
                 made += 1;
-                // With nothing pending it waits for the next flush.
+                // Alone it is written, but no reason to flush.
                 flush |= unflushed > 0;
             }
             let full = self.most > 0 && made >= self.most;

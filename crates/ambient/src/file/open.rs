@@ -7,7 +7,7 @@ use super::segment::{has_segments, missing, remove_done, segments};
 use super::share::{AmbientFile, Locks, Spare, cut, io_error, lock, read_from, skipped};
 use crate::codec::Layout;
 use crate::components::Components;
-use crate::conversion::{Conversion, Sampling};
+use crate::conversion::{Conversion, DIGITS, SPLITS, Sampling};
 use crate::record::Record;
 use ambit_base::Notify;
 use ambit_file::{FileLock, Header, LockMode, bytes_of, general, name_of, os_text};
@@ -23,8 +23,6 @@ use std::time::Duration;
 const TRIES: u32 = 40;
 /// How long to wait in between; four seconds in all, as Radiance does.
 const PAUSE: Duration = Duration::from_millis(100);
-/// Significant digits of wavelengths.
-const DIGITS: usize = 6;
 
 /// What opening came to.
 #[derive(Debug)]
@@ -192,7 +190,7 @@ impl Entry<'_> {
             Some(main) => header.extend(super::fingerprint_lines(main)),
             None => header.extend(self.opening.fingerprint.map(super::Fingerprint::lines).unwrap_or_default()),
         }
-        let splits = main.and_then(Header::wavelength_splits).unwrap_or(self.opening.splits);
+        let splits = main.map_or(self.opening.splits, |main| main.wavelength_splits().unwrap_or(SPLITS));
         let count = main.map_or(self.opening.components.count(), |main| main.components() as usize);
         header.push(format!("WAVELENGTH_SPLITS= {}", words(&splits)));
         header.push(format!("NCOMP={count}"));

@@ -25,7 +25,8 @@ const LAMPS: u64 = 0x4c;
 const SHADOWS: u64 = 0x4d;
 
 impl<O: Observer> Walk<'_, O> {
-    /// True where a ray is one of a hemisphere's and lamps are many, so that few will do; `-dt 0` wants all. Few lamps are better asked all: what is known to block them spares more rays than choosing would.
+    /// True where a ray is one of a hemisphere's and lamps are many, so that few will do; `-dt 0` wants all. Where there are
+    /// few, all are asked: what is known to block them spares more rays than choosing would.
     pub(super) fn asks_few(&self, ray: &Ray<'_>) -> bool {
         self.tracer.scene.choice.has_many() && ray.is_ambient() && self.tracer.options.direct.threshold > 0.0
     }
