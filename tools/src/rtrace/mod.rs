@@ -64,23 +64,24 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         None => OctreeSource::File(octree.clone()),
     };
     let mut scene = Scene::open(session, source, &options.rendering, !job.spec.shades(), options.common.output)?;
+    // Not by way of Rust's own buffer, of which a poll knows nothing.
+    let input = stdin().as_fd().try_clone_to_owned().map_err(|e| Failure::system("cannot read standard input", &e))?;
+    let mut input = Patient::new(File::from(input), session.stop());
     let goal = options.rendering.goal.filter(|_| job.spec.shades());
     let Some(error) = goal else {
         scene.begin(&octree, &options.rendering)?;
-        // Not by way of Rust's own buffer, of which a poll knows nothing.
-        let input =
-            stdin().as_fd().try_clone_to_owned().map_err(|e| Failure::system("cannot read standard input", &e))?;
-        let result = job.run(session, &options, &mut scene, Patient::new(File::from(input), session.stop()));
+        let result = job.run(session, &options, &mut scene, input);
         // The ambient file is closed whatever happened; the first error counts.
         return result.and(scene.close());
     };
     // The pilot is made of rays from everywhere in the input.
-    let mut input = Vec::new();
-    stdin().lock().read_to_end(&mut input).map_err(|e| Failure::system("cannot read standard input", &e))?;
+    let mut rays = Vec::new();
+    input.read_to_end(&mut rays).map_err(|e| Failure::system("cannot read standard input", &e))?;
+    session.check()?;
     let stream = stream::Stream::new(&options, &job.spec);
-    options.rendering.options = pilot::choose(session, &options, &stream, &input, &mut scene, error)?;
+    options.rendering.options = pilot::choose(session, &options, &stream, &rays, &mut scene, error)?;
     scene.begin(&octree, &options.rendering)?;
-    let result = job.run(session, &options, &mut scene, &input[..]);
+    let result = job.run(session, &options, &mut scene, &rays[..]);
     // The ambient file is closed whatever happened; the first error counts.
     result.and(scene.close())
 }
