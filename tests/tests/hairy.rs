@@ -128,6 +128,13 @@ fn plain_surfaces_are_hardly_touched() {
     assert!((with / without - 1.0).abs() < 0.02, "{with} samples instead of {without}");
 }
 
+/// Sensors on a grid over the box's floor.
+fn grid() -> String {
+    let point = |k: u32| format!("{} {} .001 0 0 1", 0.1 + 0.04 * f64::from(k % 20), 0.1 + 0.04 * f64::from(k / 20));
+    let points: Vec<String> = (0..400).map(point).collect();
+    points.join("\n") + "\n"
+}
+
 /// The overlap that is asked for decides how many records there are.
 #[test]
 fn overlap_is_an_option() {
@@ -136,9 +143,7 @@ fn overlap_is_an_option() {
     }
     let scratch = tempfile::tempdir().expect("a scratch folder can be made");
     let octree = ambit_tests::Fixture::named("cornell").compile(scratch.path());
-    let point = |k: u32| format!("{} {} .001 0 0 1", 0.1 + 0.04 * f64::from(k % 20), 0.1 + 0.04 * f64::from(k / 20));
-    let grid: Vec<String> = (0..400).map(point).collect();
-    let grid = grid.join("\n") + "\n";
+    let grid = grid();
     let run = |line: &str| {
         let program = Program::new("rtrace").line("-h -w- -I -ab 1 -ad 64 -as 0 -aa .3 -ar 64 --stats").line(line);
         program.arg(&octree).feed(grid.as_bytes())
@@ -166,13 +171,7 @@ fn smoothing_is_an_option_and_spares_the_files_of_others() {
     }
     let scratch = tempfile::tempdir().expect("a scratch folder can be made");
     let octree = ambit_tests::Fixture::named("cornell").compile(scratch.path());
-    let point = |k: u32| format!("{} {} .001 0 0 1", 0.08 + 0.04 * f64::from(k % 20), 0.08 + 0.04 * f64::from(k / 20));
-    let grid: Vec<String> = (0..400).map(point).collect();
-    let grid = grid.join(
-        "
-",
-    ) + "
-";
+    let grid = grid();
     let file = |name: &str| scratch.path().join(name);
     let run = |line: &str, name: &str| {
         let program = Program::new("rtrace").line("-h -w- -I -ab 1 -ad 64 -as 0 -aa .3 -ar 64").line(line);

@@ -73,12 +73,7 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
         Row::new(
             "-overlap",
             Place::Reals(1, |s: &mut S, weight| {
-                let weight = weight[0] as f32;
-                if !(0.0..=MOST_OVERLAP).contains(&weight) {
-                    let text = format!("command line error at '--overlap': {weight} (expected 0 to {MOST_OVERLAP})");
-                    return Err(Failure::user(text));
-                }
-                light(s).options.ambient.overlap = weight;
+                light(s).options.ambient.overlap = within("--overlap", weight[0], 0.0..=MOST_OVERLAP)?;
                 Ok(())
             }),
             "the weight that irradiance values around a point must add up to before it does without one of its own, for what \
@@ -88,12 +83,7 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
         Row::new(
             "-smoothing",
             Place::Reals(1, |s: &mut S, factor| {
-                let factor = factor[0] as f32;
-                if !(1.0..=MOST_SMOOTHING).contains(&factor) {
-                    let text = format!("command line error at '--smoothing': {factor} (expected 1 to {MOST_SMOOTHING})");
-                    return Err(Failure::user(text));
-                }
-                light(s).options.ambient.smoothing = factor;
+                light(s).options.ambient.smoothing = within("--smoothing", factor[0], 1.0..=MOST_SMOOTHING)?;
                 Ok(())
             }),
             "how far irradiance values count in what is seen directly, as a multiple of their reach, once there are enough \
@@ -115,4 +105,14 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
         )
         .values("HOW"),
     ]
+}
+
+/// A value that an option allows.
+fn within(option: &str, value: f64, allowed: std::ops::RangeInclusive<f32>) -> Result<f32, Failure> {
+    let value = value as f32;
+    if allowed.contains(&value) {
+        return Ok(value);
+    }
+    let (least, most) = allowed.into_inner();
+    Err(Failure::user(format!("command line error at '{option}': {value} (expected {least} to {most})")))
 }
