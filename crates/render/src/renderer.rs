@@ -282,6 +282,8 @@ impl Tracer<'_> {
 impl<O: Observer> Walk<'_, O> {
     pub(crate) fn answer(&mut self, request: &Request) -> Answer {
         let tracer = self.tracer;
+        // Those before are other requests'.
+        let first = self.misses.len();
         let direction = request.direction.normalize_or_zero();
         if direction == DVec3::ZERO || !request.origin.is_finite() {
             return Answer::nothing(request.origin, direction);
@@ -316,7 +318,7 @@ impl<O: Observer> Walk<'_, O> {
                 ray = ray_to_source;
             }
         }
-        let value = ray.value + self.endless(0);
+        let value = ray.value + self.endless(first);
         Answer { value, ..tracer.describe(&ray, request.aim != Aim::Irradiance) }
     }
 

@@ -43,8 +43,8 @@ impl Renderer {
         let opened = AmbientFile::open(path, &opening, notify).map_err(|e| failed(&e))?;
         let cache = self.cache_mut();
         cache.quantise(components.clone());
-        if opened.foreign {
-            cache.smooth_nothing();
+        if let Some(smoothing) = opened.smoothing {
+            cache.smooth_at_most(smoothing);
         }
         cache.load(opened.records);
         let handed = cache.records().len();

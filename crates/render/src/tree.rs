@@ -180,10 +180,9 @@ impl Renderer {
             let mut misses = Vec::new();
             let mut work = tracer.work();
             for pass in 0..self.cache.params().passes {
-                let mut own = Vec::new();
-                Walk { tracer: &tracer, cache: &self.cache, work: &mut work, misses: &mut own, pass, observer: () }
+                let misses = &mut misses;
+                Walk { tracer: &tracer, cache: &self.cache, work: &mut work, misses, pass, observer: () }
                     .answer(request);
-                misses.append(&mut own);
             }
             drop(work);
             if misses.is_empty() || self.scene.fault.is_set() {
