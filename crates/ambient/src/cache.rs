@@ -105,9 +105,9 @@ impl Cache {
         self.quantised = Some(components);
     }
 
-    /// Uses records as far as they reach and no farther, as Radiance does: for those of its files.
-    pub fn smooth_nothing(&mut self) {
-        self.limits.smoothing = 1.0;
+    /// Uses records at most as far as is known of their corrals: a multiple of their reach, 1 for those of Radiance.
+    pub fn smooth_at_most(&mut self, smoothing: f32) {
+        self.limits.smoothing = self.limits.smoothing.min(smoothing).max(1.0);
     }
 
     /// Takes in records from a file. Implausible ones and duplicates are dropped; returns how many.

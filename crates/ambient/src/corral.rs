@@ -92,6 +92,10 @@ mod tests {
         let turned = corral(Grid::Disk { side: 32 }, |c| points[c], |c| nearness[c], [0.2, 0.2], 1.0, PI / 2.0);
         assert_eq!(turned, bits.rotate_right(8));
         assert_eq!(corral(Grid::Disk { side: 32 }, |c| points[c], |c| nearness[c], [0.01, 0.01], 1.0, 0.0), 0);
+        // Records that smooth look a little farther.
+        let wide =
+            |smoothing| corral(Grid::Disk { side: 32 }, |c| points[c], |c| nearness[c], [0.09, 0.09], smoothing, 0.0);
+        assert!(wide(1.0) == 0 && wide(1.25) & 1 == 1);
         let ceiling = vec![100.0; n * n];
         assert_eq!(corral(Grid::Disk { side: 32 }, |c| points[c], |c| ceiling[c], [0.2, 0.2], 1.0, 0.0), 0);
     }

@@ -117,7 +117,7 @@ pub(crate) fn finish<O>(
     };
     let rotation = turned(rotation, shape.turn);
     let reach = shape.radii.map(|r| r * limits.accuracy);
-    let smoothing = limits.used(query.level) / limits.accuracy;
+    let smoothing = limits.smoothing(query.level);
     let frame = plan.frame();
     let (s, c) = shape.turn.sin_cos();
     let u = frame.u * c + frame.v * s;

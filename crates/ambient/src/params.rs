@@ -160,9 +160,14 @@ pub struct Limits {
 const BASE_ANGLE: f64 = 10.0 * std::f64::consts::PI / 180.0;
 
 impl Limits {
+    /// How far records of a level count: a multiple of their reach.
+    pub(crate) fn smoothing(&self, level: u8) -> f64 {
+        if level == 0 { f64::from(self.smoothing) } else { 1.0 }
+    }
+
     /// How far records of a level count: a multiple of their radii.
     pub(crate) fn used(&self, level: u8) -> f64 {
-        if level == 0 { self.accuracy * f64::from(self.smoothing) } else { self.accuracy }
+        self.accuracy * self.smoothing(level)
     }
 
     /// Limits for a scene whose cube has the given edge.

@@ -31,12 +31,12 @@ pub struct Opened {
     pub records: Vec<Record>,
     /// The file to append to; none if it cannot be written, of which a warning has told.
     pub file: Option<AmbientFile>,
-    /// Another program made the file.
-    pub foreign: bool,
+    /// The smoothing for which the corrals of a file's records were made: 1 unless it tells. None of a new file.
+    pub smoothing: Option<f32>,
 }
 
 impl Opened {
-    const NOTHING: Self = Self { records: Vec::new(), file: None, foreign: false };
+    const NOTHING: Self = Self { records: Vec::new(), file: None, smoothing: None };
 }
 
 /// An ambient file on its way to being opened.
@@ -165,7 +165,7 @@ impl Entry<'_> {
         let (name, spare) = (self.name.clone(), self.spare(head));
         let (layout, components) = (Layout::CURRENT, self.opening.components.clone());
         let file = AmbientFile { file, name, layout, components, start, end: start, locks, waiting: Vec::new(), spare };
-        Ok(Opened { records: Vec::new(), file: Some(file), foreign: false })
+        Ok(Opened { records: Vec::new(), file: Some(file), smoothing: None })
     }
 
     /// Locks a file of this entry; `None` if there are no locks to be had.
@@ -262,7 +262,7 @@ impl Entry<'_> {
     /// Goes on with a file that was read as its fingerprint allows.
     fn taken(&self, found: Existing, file: Arc<File>) -> Opened {
         let Existing { contents, verdict, end, locked } = found;
-        let foreign = is_foreign(&contents);
+        let smoothing = Some(smoothing_of(&contents));
         match verdict {
             Verdict::Leave(list) => self.left(&contents, &list),
             Verdict::Use(warning) => {
@@ -278,7 +278,7 @@ impl Entry<'_> {
                 let locks = if locked { Locks::Within(self.opening.patience) } else { Locks::Broken };
                 let file =
                     AmbientFile { file, name, layout, components, start, end, locks, waiting: Vec::new(), spare };
-                Opened { records, file: Some(file), foreign }
+                Opened { records, file: Some(file), smoothing }
             }
         }
     }
@@ -332,8 +332,8 @@ impl Entry<'_> {
                     let found = contents.records.len();
                     self.notify.warn(&format!("loaded {found} values from read-only ambient file"));
                 }
-                let foreign = is_foreign(&contents);
-                Ok(Opened { records: contents.records, file: None, foreign })
+                let smoothing = Some(smoothing_of(&contents));
+                Ok(Opened { records: contents.records, file: None, smoothing })
             }
         }
     }
@@ -423,7 +423,9 @@ impl AmbientFile {
     }
 }
 
-/// True of files without the lines that this program writes into their headers.
-fn is_foreign(contents: &Contents) -> bool {
-    super::fingerprint_lines(&contents.header).next().is_none()
+/// The smoothing of the run that began a file; that of Radiance, and of older versions, is none.
+fn smoothing_of(contents: &Contents) -> f32 {
+    let words = super::fingerprint_lines(&contents.header).flat_map(|line| line.split(u8::is_ascii_whitespace));
+    let told = words.filter_map(|word| std::str::from_utf8(word.strip_prefix(b"smoothing=")?).ok()?.parse().ok());
+    told.last().unwrap_or(1.0)
 }

@@ -164,6 +164,23 @@ fn asking_again_makes_no_records() {
 }
 
 #[test]
+fn places_of_records_are_smoothed_like_others() {
+    // Who asks again gets what it got, also where records were made; unless values are those of hemispheres alone.
+    let room = Room::new();
+    let pixels = room.pixels(16);
+    let changed = |smoothing: f32| {
+        let params = Params { overlap: crate::OVERLAP, smoothing, ..params(1) };
+        let mut cache = Cache::new(params, DVec3::splat(-0.01), 1.02);
+        let values = cache.resolve(&room, &pixels);
+        let again = pixels.iter().map(|m| cache.ask(&room, &m.query));
+        let same = |(value, again): (&Rgb, Answer)| matches!(again, Answer::Value(light) if light.value == *value);
+        values.iter().zip(again).filter(|pair| !same((pair.0, pair.1))).count()
+    };
+    let (smooth, plain) = (changed(1.25), changed(1.0));
+    assert!(smooth == 0 && plain > 0, "{smooth} and {plain} of {} differ", pixels.len());
+}
+
+#[test]
 fn a_point_beside_a_wall_is_answered_by_its_own_record() {
     let room = Room::new();
     let mut cache = Cache::new(params(2), DVec3::splat(-0.01), 1.02);
