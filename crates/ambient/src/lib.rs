@@ -65,7 +65,9 @@ pub use file::{Segment, missing, remove_done, segments};
 pub use hemisphere::Hemisphere;
 pub use light::{APART, Light};
 pub use observe::{Clock, LEVELS, Observed};
-pub use params::{ASSUMED_REFLECTANCE, Bounces, Limits, MOST_OVERLAP, OVERLAP, Params, SMOOTHING, Spacing, Systems};
+pub use params::{
+    ASSUMED_REFLECTANCE, Bounces, Interpolation, Limits, MOST_OVERLAP, OVERLAP, Params, SMOOTHING, Spacing, Systems,
+};
 pub use record::Record;
 pub use sampler::{Answer, Miss, Query, Sample, SampleRay, Sampler};
 pub use steps::{CORES, Parallelism, Steps};

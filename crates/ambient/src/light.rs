@@ -41,11 +41,6 @@ impl Light {
         self
     }
 
-    /// Every part divided by a number.
-    pub(crate) fn over(self, divisor: f32) -> Self {
-        Self { value: self.value / divisor, late: self.late.map(|l| l / divisor) }
-    }
-
     /// Every part multiplied by a colour.
     pub fn times(self, colour: Rgb) -> Self {
         Self { value: self.value * colour, late: self.late.map(|l| l * colour) }

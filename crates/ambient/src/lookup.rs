@@ -1,12 +1,20 @@
 //! Whether a record may answer a query, with what weight, and what it answers: the tests in order of Radiance 6.0a, a
 //! product of two hat functions (Schwarzhaupt, Jensen, Jarosz 2012 for the ellipse) and first-order extrapolation
 //! (Ward & Heckbert 1992, *Irradiance Gradients*).
+//!
+//! Means of extrapolations are too bright where irradiance is hollow from below, as on every ceiling: tangents lie above.
+//! Let records of values `Eᵢ` and gradients `gᵢ` at offsets `dᵢ` from the query have weights `wᵢ` that add up to 1, and let
+//! the field be quadratic, with Hessian `H`. The mean of `Eᵢ + gᵢ·dᵢ` errs by `−½ Σwᵢ dᵢᵀHdᵢ`. The mean of `Eᵢ` alone, moved
+//! by the mean gradient over the mean offset `D`, errs by `+½ Σwᵢ dᵢᵀHdᵢ − DᵀHD`. The mean of both therefore errs by
+//! `−½ DᵀHD`: nothing where records lie evenly around, and what extrapolation does where there is but one. Linear functions
+//! are met exactly, and of the gradients' noise half is averaged. That is interpolation of second order here; it needs no
+//! record's Hessian.
 
 use crate::entry::Entry;
 use crate::light::Light;
-use crate::params::Limits;
+use crate::params::{Interpolation, Limits};
 use crate::sampler::{Query, Sampler};
-use ambit_base::{DVec3, EPSILON, Vec3};
+use ambit_base::{Colour, DVec3, EPSILON, Vec3};
 
 /// Least extrapolation factor; a record that falls to it is not used.
 pub(crate) const MIN_FACTOR: f32 = 0.05;
@@ -14,6 +22,8 @@ pub(crate) const MIN_FACTOR: f32 = 0.05;
 pub(crate) const MAX_FACTOR: f32 = 20.0;
 /// Relative rounding of positions in ambient files (31-bit mantissas), allowed for in the tests across the plane.
 const ROUNDING: f64 = 1e-9;
+/// Largest factor by which the mean gradient moves what records extrapolate half the way: what one record comes to.
+const MAX_MOVE: f32 = 2.0;
 /// Queries this near to a corralled record, as a fraction of its reach, need no probe: the azimuth of so short a vector
 /// means nothing, and probing would reject a record at its own place.
 const COINCIDENT: f32 = 1e-3;
@@ -39,6 +49,7 @@ pub(crate) struct Asked {
     rounding: f32,
     /// Within this distance a record that would be rejected for its steep extrapolation still serves as last resort.
     spare_reach: f32,
+    interpolation: Interpolation,
 }
 
 impl Asked {
@@ -57,6 +68,7 @@ impl Asked {
             behind: (limits.min_radius * limits.accuracy + rounding) as f32,
             rounding: rounding as f32,
             spare_reach: (0.5 * limits.min_radius * limits.accuracy) as f32,
+            interpolation: limits.interpolation,
         }
     }
 
@@ -74,11 +86,33 @@ pub(crate) struct Sum {
     /// Of all records that `light` is of.
     pub(crate) smooth: f32,
     light: Light,
+    moved: Moved,
     spare: Option<(f32, Light)>,
 }
 
+/// Sums for interpolation of second order, in grey; all 0 for the first.
+struct Moved {
+    /// Of what `light` is of.
+    value: f32,
+    /// Of gradients.
+    gradient: Vec3,
+    /// Of offsets from records to the query.
+    offset: Vec3,
+}
+
+impl Moved {
+    const NONE: Self = Self { value: 0.0, gradient: Vec3::ZERO, offset: Vec3::ZERO };
+
+    /// How much more the sum comes to once the mean gradient has moved it by half the mean offset.
+    fn factor(&self, weight: f32) -> f32 {
+        let by = 0.5 * self.gradient.dot(self.offset) / weight;
+        if self.value > 0.0 { (1.0 + by / self.value).clamp(MIN_FACTOR, MAX_MOVE) } else { 1.0 }
+    }
+}
+
 impl Sum {
-    pub(crate) const EMPTY: Self = Self { weight: 0.0, smooth: 0.0, light: Light::NONE, spare: None };
+    pub(crate) const EMPTY: Self =
+        Self { weight: 0.0, smooth: 0.0, light: Light::NONE, moved: Moved::NONE, spare: None };
 
     /// True if the weight makes an answer; a last resort does whatever it weighs.
     pub(crate) fn is_enough(&self, weight: f32) -> bool {
@@ -92,7 +126,7 @@ impl Sum {
 
     /// The mean of all that has been added.
     pub(crate) fn smoothed(&self) -> Option<Light> {
-        (f64::from(self.smooth) > EPSILON).then(|| self.light.over(self.smooth))
+        (f64::from(self.smooth) > EPSILON).then(|| self.light * (self.moved.factor(self.smooth) / self.smooth))
     }
 }
 
@@ -144,7 +178,8 @@ pub(crate) fn accumulate<S: Sampler>(
     let turn = normal.cross(asked.shading);
     let [gu, gv] = entry.gradient;
     let [hu, hv] = entry.rotation;
-    let factor = 1.0 + du * gu + dv * gv + turn.dot(u) * hu + turn.dot(v) * hv;
+    let turned = 1.0 + turn.dot(u) * hu + turn.dot(v) * hv;
+    let factor = turned + du * gu + dv * gv;
     if factor <= MIN_FACTOR {
         if d2 < asked.spare_reach * asked.spare_reach && sum.spare.is_none_or(|(nearest, _)| d2 < nearest) {
             sum.spare = Some((d2, light() * MIN_FACTOR));
@@ -156,7 +191,20 @@ pub(crate) fn accumulate<S: Sampler>(
     let smooth = facing * (1.0 - reach / asked.used);
     sum.weight += weight;
     sum.smooth += smooth;
-    sum.light += light() * (factor.min(MAX_FACTOR) * smooth);
+    let light = light();
+    sum.light += match asked.interpolation {
+        Interpolation::First => light * (factor.min(MAX_FACTOR) * smooth),
+        Interpolation::Second => {
+            let turned = turned.clamp(MIN_FACTOR, MAX_FACTOR);
+            let tamed = if factor > MAX_FACTOR { (MAX_FACTOR - turned) / (factor - turned) } else { 1.0 };
+            let half = 0.5 * (factor.min(MAX_FACTOR) + turned) * smooth;
+            let value = light.value.mean();
+            sum.moved.value += value * half;
+            sum.moved.gradient += (u * gu + v * gv) * (tamed * value * smooth);
+            sum.moved.offset += d * smooth;
+            light * half
+        }
+    };
     weight
 }
 

@@ -66,6 +66,8 @@ pub struct Systems {
     pub bounces: Bounces,
     /// `--spacing`: what decides how far records reach.
     pub spacing: Spacing,
+    /// `--interpolation`: of what order values between records are.
+    pub interpolation: Interpolation,
 }
 
 /// What questions get of records that have more bounces than are left at their level.
@@ -86,6 +88,16 @@ pub enum Spacing {
     Hessian,
     /// The harmonic mean distance of the surroundings (split sphere), with the gradients of Ward & Heckbert 1992; circles.
     Classical,
+}
+
+/// Of what order values between records are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Means of what records extrapolate, as in Radiance: linear functions are met exactly (Ward & Heckbert 1992).
+    First,
+    /// Quadratic ones, too, where records lie evenly around.
+    #[default]
+    Second,
 }
 
 impl Default for Params {
@@ -154,6 +166,8 @@ pub struct Limits {
     pub actual_weights: bool,
     /// How far records of level 0 count, as a multiple of their reach.
     pub smoothing: f32,
+    /// Of what order values between records are.
+    pub interpolation: Interpolation,
 }
 
 /// The angle two normals may always differ by, radians; the tolerance is added to it.
@@ -198,6 +212,7 @@ impl Limits {
             unit,
             actual_weights: params.systems.actual_weights,
             smoothing: params.smoothing.max(1.0),
+            interpolation: params.systems.interpolation,
         }
     }
 

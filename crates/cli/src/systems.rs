@@ -4,7 +4,7 @@ use crate::common::Carries;
 use crate::failure::Failure;
 use crate::rendering::Rendering;
 use crate::table::{Place, Row};
-use ambit_render::{Bounces, MOST_OVERLAP, Spacing};
+use ambit_render::{Bounces, Interpolation, MOST_OVERLAP, Spacing};
 
 /// Beyond it, values of other walls' corners come in.
 const MOST_SMOOTHING: f32 = 2.0;
@@ -90,6 +90,20 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
              within it; 1 (as in Radiance, and with its ambient files whatever is given) to 2; 1.25 unless given",
         )
         .values("FACTOR"),
+        Row::new(
+            "-interpolation",
+            Place::Word(|s: &mut S, order, _| {
+                light(s).options.ambient.systems.interpolation = match order.as_str() {
+                    "second" => Interpolation::Second,
+                    "first" => Interpolation::First,
+                    other => return Err(Failure::choice("--interpolation", other, &["second", "first"])),
+                };
+                Ok(())
+            }),
+            "of what order values between irradiance values are: second (exact for quadratic functions where irradiance \
+             values lie evenly around; unless given) or first (for linear ones, as in Radiance)",
+        )
+        .values("ORDER"),
         Row::new(
             "-spacing",
             Place::Word(|s: &mut S, how, _| {

@@ -1,7 +1,7 @@
 //! Which records answer which queries.
 
 use crate::store::{ENOUGH, Store};
-use crate::{Cache, Limits, Miss, Params, Query, Record, Sample, SampleRay, Sampler};
+use crate::{Cache, Interpolation, Limits, Miss, Params, Query, Record, Sample, SampleRay, Sampler};
 use ambit_base::{DVec3, Rgb, Stream};
 
 /// Nothing but a wall in the plane x = `.0`.
@@ -184,6 +184,60 @@ fn records_smooth_a_little_beyond_their_reach() {
     let deep = |r: &Record| Record { level: 1, ..r.clone() };
     let deeper = Query { level: 1, ..q };
     assert!(near(ask(&[deep(&a), deep(&b)], &smooth, &deeper), b.value), "deeper questions are not smoothed");
+}
+
+/// Mean and RMS error of answers around the origin to records on a lattice of the given spacing, each jittered by up to
+/// a quarter of it, of the value and gradient that `field` has there.
+fn errors(interpolation: Interpolation, spacing: f64, field: impl Fn(f64, f64) -> (f64, [f64; 2])) -> (f64, f64) {
+    let limits = Limits { interpolation, ..limits() };
+    let record_at = |i: i32, j: i32| {
+        let [x, y] = Stream::new((i + 20) as u32, (j + 20) as u64).two().map(|r| 0.5 * spacing * (r - 0.5));
+        let (x, y) = (f64::from(i) * spacing + x, f64::from(j) * spacing + y);
+        let (value, gradient) = field(x, y);
+        let position = DVec3::new(x, y, 0.0);
+        let gradient = gradient.map(|g| (g / value) as f32);
+        Record { position, value: Rgb::splat(value as f32), gradient, radii: [0.8; 2], ..record() }
+    };
+    let records: Vec<_> = (-9..=9).flat_map(|i| (-9..=9).map(move |j| record_at(i, j))).collect();
+    let errors: Vec<f64> = (0..400)
+        .map(|k| {
+            let [x, y] = Stream::new(k, 1).two().map(|r| 4.0 * spacing * (r - 0.5));
+            let found = answer_within(&limits, &records, &OPEN, &query(x, y, 0.0)).expect("the lattice covers it");
+            f64::from(found.x) - field(x, y).0
+        })
+        .collect();
+    let mean = |f: fn(f64) -> f64| errors.iter().copied().map(f).sum::<f64>() / errors.len() as f64;
+    (mean(|e| e), mean(|e| e * e).sqrt())
+}
+
+#[test]
+fn linear_functions_are_met_and_quadratic_ones_by_the_second_order() {
+    for interpolation in [Interpolation::First, Interpolation::Second] {
+        let (mean, rms) = errors(interpolation, 0.1, |x, y| (2.0 + 0.5 * x - 0.8 * y, [0.5, -0.8]));
+        assert!(mean.abs() < 1e-6 && rms < 1e-6, "{interpolation:?}: {mean} {rms}");
+    }
+    let dome = |x: f64, y: f64| (2.0 - 2.0 * x * x - y * y, [-4.0 * x, -2.0 * y]);
+    // Tangents lie above a dome, at a mean by 3 squares of the distance along an axis.
+    let (above, first) = errors(Interpolation::First, 0.06, dome);
+    assert!(above > 0.9 * first && (0.003..0.02).contains(&first), "{above} {first}");
+    let (mean, second) = errors(Interpolation::Second, 0.06, dome);
+    assert!(second < 0.1 * first && mean.abs() < 0.05 * above, "{mean} {second} of {first}");
+    // As the lattice is thinned to few records in reach, what is left grows towards the first order's.
+    let (_, first) = errors(Interpolation::First, 0.12, dome);
+    let (_, second) = errors(Interpolation::Second, 0.12, dome);
+    assert!(second < 0.4 * first, "{second} of {first}");
+}
+
+#[test]
+fn where_one_record_answers_both_orders_are_the_same() {
+    let steep = Record { gradient: [3.0, -2.0], rotation: [0.3, 0.4], ..record() };
+    for (x, y) in [(0.05, 0.02), (-0.06, 0.05), (0.01, -0.03)] {
+        let q = Query { shading: DVec3::new(0.1, 0.2, 1.0).normalize(), ..query(x, y, 0.0) };
+        let [first, second] = [Interpolation::First, Interpolation::Second].map(|interpolation| {
+            answer_within(&Limits { interpolation, ..limits() }, std::slice::from_ref(&steep), &OPEN, &q).unwrap().x
+        });
+        assert!((first - second).abs() < 1e-6 * first, "{first} {second}");
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Counting changes nothing, and counts the same on any number of threads.
 
 use super::room::Room;
-use crate::{Answer, Cache, Light, Observed, Params};
+use crate::{Answer, Cache, Interpolation, Light, Observed, Params, Systems};
 use ambit_base::{Colour, DVec3, Rgb};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -13,7 +13,9 @@ fn tick() -> Duration {
 }
 
 fn observed(observe: bool, threads: usize) -> (Vec<Answer>, Option<Observed>, f64) {
-    let params = Params { bounces: 2, divisions: 64, super_samples: 0, ..Params::default() };
+    // Records taken one by one extrapolate, each by itself.
+    let systems = Systems { interpolation: Interpolation::First, ..Systems::default() };
+    let params = Params { bounces: 2, divisions: 64, super_samples: 0, systems, ..Params::default() };
     let room = Room::new();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
     pool.install(|| {
