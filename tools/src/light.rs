@@ -88,7 +88,14 @@ impl<'a> Scene<'a> {
         let ambient = rendering.ambient_file.as_ref().filter(|_| !casting);
         let fingerprint = ambient.map(|_| loaded.fingerprint(&environment));
         let options = Options { casting, ..rendering.options.clone() };
-        let renderer = Renderer::new(loaded, options, &environment).map_err(failed)?;
+        let mut renderer = Renderer::new(loaded, options, &environment).map_err(failed)?;
+        // What is estimated beforehand must be as what the file allows.
+        if let (Some(_), Some(file), Some(reuse), Some(scene)) =
+            (rendering.goal, ambient, rendering.reuse, &fingerprint)
+        {
+            let fingerprint = &scene.clone().with(&rendering.options);
+            renderer.foresee(&Store { path: &path_of(file), header: &[], fingerprint, reuse, owner: "" });
+        }
         let spectrum = &rendering.options.spectrum;
         let spectrum = (!spectrum.is_rgb())
             .then(|| Spectral { spectra: None, conversion: SpectralConversion::new(output, spectrum) });
