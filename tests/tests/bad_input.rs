@@ -159,7 +159,7 @@ fn commands_that_fail_are_told_of_once_they_have_given_an_octree() {
     bench.write("s.oct", &octree.out);
     bench.write("good", b"cat s.oct; exit 3");
     bench.write("bad", b"echo x; exit 3");
-    for line in ["oconv -i !sh${IFS}./good", "rtrace -w- !sh${IFS}./good", "rpict -x 4 -y 4 !sh${IFS}./good"] {
+    for line in ["oconv -i !sh${IFS}./good", "rtrace !sh${IFS}./good", "rpict -x 4 -y 4 !sh${IFS}./good"] {
         let answer = bench.run(line, b"");
         assert_eq!(answer.status, Some(0), "{line}: {}", answer.err);
         let program = line.split(' ').next().unwrap();
