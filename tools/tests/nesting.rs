@@ -86,15 +86,15 @@ fn paths_without_end_are_branches_as_long_as_there_is_room() {
         "void plasfunc W 2 .5 . 0 5 1 1 1 0 0",
         "void BRTDfunc W 10 0 0 0 0 0 0 0 0 0 . 0 9 1 1 1 0 0 0 0 0 0",
     ];
-    let rays = (1..30).map(|k| format!("0 0 1 .{k} .2 .7\n")).collect::<String>();
+    let rays: Vec<String> = (1..30).map(|k| format!("0 0 1 .{k} .2 .7\n")).collect();
     for wall in walls {
         for panes in [0, 40] {
             let mist = |k| format!("M sphere m{k} 0 0 4 0 0 0 {}\n", 2.9 - 0.01 * f64::from(k));
             let shells = (0..panes).map(mist).collect::<String>();
             let scene = format!("{wall}\nW bubble b 0 0 4 0 0 0 3\nvoid mist M 0 0 0\n{shells}");
             // Nothing is shown: indented lines of so many rays are long.
-            let tree =
-                Bench::new(&scene).rtrace("-ab 1 -ad 1 -as 0 -aa 0 --unbounded-bounces -tI /dev/null -otm", &rays);
+            let tree = Bench::new(&scene)
+                .rtrace("-ab 1 -ad 1 -as 0 -aa 0 --unbounded-bounces -tI /dev/null -otm", &rays.concat());
             refused(&tree, &format!("{wall} {panes}"));
         }
     }

@@ -2,6 +2,7 @@
 
 use ambit_ambient::{Components, FORMAT, Layout, Record, TextForm, scan_header};
 use ambit_base::{DVec3, Rgb};
+use ambit_cli::{StandardOutput, VERSION, answer};
 use ambit_file::{Header, bytes_of, command_line, word_of};
 use ambit_render::Spectrum;
 use std::env::args_os;
@@ -73,8 +74,14 @@ fn run(words: &[OsString]) -> Result<(), Failure> {
     let mut file = None;
     for word in words_left.by_ref() {
         match word.as_bytes() {
-            b"--help" => return answer(HELP),
-            b"--version" => return answer(&format!("{}\n", ambit_cli::VERSION)),
+            b"--help" => {
+                answer(HELP.as_bytes());
+                return Ok(());
+            }
+            b"--version" => {
+                answer(format!("{VERSION}\n").as_bytes());
+                return Ok(());
+            }
             [b'-', b'd', ..] => options.form = TextForm::Tabular,
             [b'-', b'h', ..] => options.header = false,
             [b'-', b'r', ..] => options.reverse = true,
@@ -95,7 +102,7 @@ fn run(words: &[OsString]) -> Result<(), Failure> {
         io::stdin().lock().read_to_end(&mut bytes).map_err(Failure::Input)?;
         "standard input".to_owned()
     };
-    let mut out = BufWriter::new(ambit_cli::StandardOutput::ending());
+    let mut out = BufWriter::new(StandardOutput::ending());
     if options.reverse {
         let line = command_line(b"lookamb", words.iter().skip(1).map(|w| w.as_bytes()));
         to_binary(&bytes, &name, options, &line, &mut out)?;
@@ -108,11 +115,6 @@ fn run(words: &[OsString]) -> Result<(), Failure> {
 /// Says something on standard error.
 fn tell(text: &impl std::fmt::Display) {
     let _ = io::stderr().write_all(&bytes_of(&format!("{text}\n")));
-}
-
-fn answer(text: &str) -> Result<(), Failure> {
-    ambit_cli::answer(text.as_bytes());
-    Ok(())
 }
 
 /// The lines of a header that text and binary share.
