@@ -3,8 +3,8 @@
 
 use ambit_base::{DVec3, FAR, Silent};
 use ambit_file::Header;
-use ambit_octree::{Cube, Limits, Objects, build, prepare, write};
-use ambit_render::{Aim, Environment, OctreeSource, Options, Renderer, Request, load};
+use ambit_octree::{Cube, Limits, Objects, Source, build, prepare, write};
+use ambit_render::{Aim, Environment, Options, Renderer, Request, load};
 use ambit_scene::{NoCommands, Reader, Scene};
 use libfuzzer_sys::fuzz_target;
 use std::path::PathBuf;
@@ -35,7 +35,8 @@ fuzz_target!(|data: &[u8]| {
     let find = |_: &str| Some(path.clone());
     let environment = Environment { find: &find, notify: &Silent, definitions: &[] };
     let octree = FOLDER.join("fuzz.oct").to_string_lossy().into_owned();
-    let loaded = load(OctreeSource::File(octree), &environment).expect("it is right");
+    let source = Source::open(&octree, &mut NoCommands).expect("it is there");
+    let loaded = load(source, &environment).expect("it is right");
     let mut options = Options::rtrace();
     options.ambient.bounces = 0;
     let Ok(mut renderer) = Renderer::new(loaded, options, &environment) else { return };
@@ -46,7 +47,8 @@ fuzz_target!(|data: &[u8]| {
         index,
         aim: Aim::Radiance,
     };
-    if let Ok(answers) = renderer.trace(&[request(1.0, 0), request(-1.0, 1)], &Silent) {
+    let mut answers = Vec::new();
+    if renderer.trace(&[request(1.0, 0), request(-1.0, 1)], &Silent, &mut answers).is_ok() {
         assert!(answers.iter().all(|a| a.value.is_finite()));
     }
 });

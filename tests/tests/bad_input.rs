@@ -149,6 +149,32 @@ fn octrees_that_are_cut_short() {
     bench.fails("rtrace -h text.oct", 1, &["text.oct"]);
 }
 
+/// As in Radiance, the output of a command that fails is used if it is an octree, with a warning; else that it is none is
+/// all that matters.
+#[test]
+fn commands_that_fail_are_told_of_once_they_have_given_an_octree() {
+    let bench = Bench::new();
+    bench.write("s.rad", b"void glow g 0 0 4 1 2 3 0\ng sphere f 0 0 4 0 0 0 1\n");
+    let octree = bench.run("oconv s.rad", b"");
+    bench.write("s.oct", &octree.out);
+    bench.write("good", b"cat s.oct; exit 3");
+    bench.write("bad", b"echo x; exit 3");
+    for line in ["oconv -i !sh${IFS}./good", "rtrace !sh${IFS}./good", "rpict -x 4 -y 4 !sh${IFS}./good"] {
+        let answer = bench.run(line, b"");
+        assert_eq!(answer.status, Some(0), "{line}: {}", answer.err);
+        let program = line.split(' ').next().unwrap();
+        assert!(
+            answer.err.starts_with(&format!("{program}: warning - bad status from \"!sh")),
+            "{line}: {}",
+            answer.err
+        );
+    }
+    for line in ["oconv -i !sh${IFS}./bad", "rtrace !sh${IFS}./bad", "rpict !sh${IFS}./bad", "oconv -i .", "rtrace ."] {
+        let answer = bench.fails(line, 1, &["fatal", "not an octree"]);
+        assert!(!answer.err.contains("warning"), "{line}: {}", answer.err);
+    }
+}
+
 #[test]
 fn octrees_that_are_damaged() {
     if foreign() {

@@ -57,6 +57,16 @@ impl Conversion {
         }
     }
 
+    /// The same, all results divided by a number.
+    pub(crate) fn over(self, divisor: f32) -> Self {
+        match self {
+            Self::Same => Self::Matrix(DMat3::IDENTITY / f64::from(divisor)),
+            Self::Matrix(m) => Self::Matrix(m / f64::from(divisor)),
+            Self::Gamut(m) => Self::Gamut(m / f64::from(divisor)),
+            Self::Weights(w) => Self::Weights(w / divisor),
+        }
+    }
+
     /// How many numbers a colour becomes.
     pub(crate) fn channels(&self) -> usize {
         if matches!(self, Self::Weights(_)) { 1 } else { 3 }

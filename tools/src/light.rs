@@ -5,12 +5,12 @@ use crate::spectral::{Channels, SpectralConversion};
 use ambit_base::{EPSILON, Rgb};
 use ambit_cli::{Class, Failure, Function, Output, Rendering};
 use ambit_file::{Header, general, path_of};
+use ambit_octree::Source;
 use ambit_render::picture::SourceOutline;
 use ambit_render::{
-    Answer, Definition, Environment, OctreeSource, Options, Renderer, Request, SceneFingerprint, Spectra, Store, Visit,
-    load,
+    Answer, Definition, Environment, Options, Renderer, Request, SceneFingerprint, Spectra, Store, Visit, load,
 };
-use ambit_scene::{ErrorClass, ObjectId};
+use ambit_scene::{ErrorClass, ObjectId, Shell};
 
 /// What answers rays: the renderer, or a stand-in for tests.
 pub(crate) trait Light {
@@ -68,7 +68,7 @@ impl<'a> Scene<'a> {
     /// and blue, or, in a calculation by wavelength, the channels of `output`.
     pub(crate) fn open(
         session: &'a Session,
-        source: OctreeSource,
+        source: Source,
         rendering: &Rendering,
         casting: bool,
         output: Output,
@@ -88,7 +88,14 @@ impl<'a> Scene<'a> {
         let ambient = rendering.ambient_file.as_ref().filter(|_| !casting);
         let fingerprint = ambient.map(|_| loaded.fingerprint(&environment));
         let options = Options { casting, ..rendering.options.clone() };
-        let renderer = Renderer::new(loaded, options, &environment).map_err(failed)?;
+        let mut renderer = Renderer::new(loaded, options, &environment).map_err(failed)?;
+        // What is estimated beforehand must be as what the file allows.
+        if let (Some(_), Some(file), Some(reuse), Some(scene)) =
+            (rendering.goal, ambient, rendering.reuse, &fingerprint)
+        {
+            let fingerprint = &scene.clone().with(&rendering.options);
+            renderer.foresee(&Store { path: &path_of(file), header: &[], fingerprint, reuse, owner: "" });
+        }
         let spectrum = &rendering.options.spectrum;
         let spectrum = (!spectrum.is_rgb())
             .then(|| Spectral { spectra: None, conversion: SpectralConversion::new(output, spectrum) });
@@ -187,6 +194,11 @@ impl Light for Scene<'_> {
     fn name(&self, id: ObjectId) -> &[u8] {
         self.renderer.name(id)
     }
+}
+
+/// The octree of this name, which may be a `!command`.
+pub(crate) fn octree(name: &str) -> Result<Source, Stop> {
+    Source::open(name, &mut Shell).map_err(|e| failed(e.into()))
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "it is what map_err hands over")]

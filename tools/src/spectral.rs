@@ -58,6 +58,18 @@ impl SpectralConversion {
         }
     }
 
+    /// The same, all results divided by a number.
+    pub(crate) fn over(self, divisor: f32) -> Self {
+        let by = f64::from(divisor);
+        match self {
+            Self::Bins { count, factor } => Self::Bins { count, factor: factor / divisor },
+            Self::Number(weights) => Self::Number(weights.into_iter().map(|w| w / by).collect()),
+            Self::Colour { xyz, channels, grey } => {
+                Self::Colour { xyz, channels: channels / by, grey: grey.map(|g| g / by) }
+            }
+        }
+    }
+
     /// How many numbers a spectrum becomes.
     pub(crate) fn channels(&self) -> usize {
         match self {
@@ -101,6 +113,18 @@ impl Converter {
             Self::Rgb(Conversion::new(output, false))
         } else {
             Self::Spectral(SpectralConversion::new(output, spectrum))
+        }
+    }
+
+    /// The conversion of shares of light, which have no lumens.
+    pub(crate) fn of_shares(&self, output: Output) -> Self {
+        let efficacy = output.efficacy();
+        if efficacy == 1.0 {
+            return self.clone();
+        }
+        match self.clone() {
+            Self::Rgb(c) => Self::Rgb(c.over(efficacy)),
+            Self::Spectral(c) => Self::Spectral(c.over(efficacy)),
         }
     }
 

@@ -38,12 +38,13 @@ pub(crate) fn lines(report: &Report, seconds: f64) -> Vec<String> {
             report.rounds,
             100.0 * report.filling.as_secs_f64() / seconds.max(1e-9)
         ),
-        if o.compared > 0 {
-            let (error, difference) = (100.0 * o.error, 100.0 * o.difference);
-            let of = o.compared;
+        if let Some(deepest) = o.compared.iter().rposition(|&n| n > 0) {
+            let percent = |all: &[f64]| all.iter().map(|x| format!("{:.2}", 100.0 * x)).collect::<Vec<_>>().join(" ");
+            let (error, difference) = (percent(&o.error[..=deepest]), percent(&o.difference[..=deepest]));
+            let of = counted("look-ups", &o.compared[..=deepest]);
             format!(
-                "estimated interpolation error {error:.2} % (RMS of {of} look-ups; records that answer together differ by \
-                 {difference:.2} %)"
+                "estimated interpolation error by level {error} % (RMS of {of}; records that answer together differ by \
+                 {difference} %)"
             )
         } else {
             "interpolation error not estimated: too few look-ups that several records answer".to_owned()

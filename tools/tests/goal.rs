@@ -148,6 +148,39 @@ fn pilots_leave_the_ambient_file_alone() {
     assert!(chosen(&again).0 == settings && !errors(&again).contains("left alone"), "{}", errors(&again));
 }
 
+/// Files of Radiance and of older versions say nothing of smoothing, and none is in force with them.
+#[test]
+fn estimates_smooth_no_more_than_the_ambient_file_allows() {
+    let bench = Bench::new();
+    let tells = |text: &str| text.lines().find(|l| l.contains("% asked")).expect(text).to_owned();
+    let picture = |more: &str| tells(&errors(&bench.rpict(&format!("-ab 1 -ad 64 -aa .2 --error 15% {more}"))));
+    let sensors = |more: &str| {
+        let line = format!("-I -ab 1 -ad 64 -aa .2 --error 15% {more}");
+        tells(&errors(&bench.rtrace(&line, &sensors(300))))
+    };
+    assert!(bench.rpict("-ab 1 -ad 64 -aa .2 -af new.amb").status.success());
+    let file = fs::read(bench.0.path().join("new.amb")).unwrap();
+    let end = file.windows(2).position(|w| w == b"\n\n").unwrap();
+    let (head, records) = (String::from_utf8(file[..end].to_vec()).unwrap(), &file[end..]);
+    assert!(head.contains(" smoothing=1.25"), "{head}");
+    let older = head.replace(" smoothing=1.25", "");
+    let theirs: Vec<&str> = head.lines().filter(|l| !l.starts_with("AMBIT")).collect();
+    for (name, head) in [("older.amb", older), ("theirs.amb", theirs.join("\n"))] {
+        fs::write(bench.0.path().join(name), [head.as_bytes(), records].concat()).unwrap();
+    }
+    assert_ne!(picture(""), picture("--smoothing 1"), "smoothing shows");
+    for estimate in [&picture as &dyn Fn(&str) -> String, &sensors] {
+        let (smooth, rough) = (estimate(""), estimate("--smoothing 1"));
+        // What begins a file smooths, and so does what goes on with one of ours.
+        assert_eq!(estimate("-af absent.amb"), smooth);
+        assert_eq!(estimate("-af absent.amb"), smooth);
+        fs::remove_file(bench.0.path().join("absent.amb")).unwrap();
+        for name in ["older.amb", "theirs.amb"] {
+            assert_eq!(estimate(&format!("-af {name}")), rough, "{name}");
+        }
+    }
+}
+
 #[test]
 fn sensors_have_settings_of_their_own() {
     let bench = Bench::new();

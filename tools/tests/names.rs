@@ -101,3 +101,75 @@ fn names_may_be_any_bytes() {
     known.sort();
     assert_eq!(names, known);
 }
+
+/// The programs beside them, which take names and say them.
+#[test]
+fn other_programs_take_any_bytes_too() {
+    let bench = Bench(tempfile::tempdir().unwrap());
+    bench.write(
+        b"s\xff.rad",
+        b"void glow g 0 0 4 1 1 1 0\ng sphere s 0 0 4 0 0 9 3\n\
+        void plastic m 0 0 5 .5 .5 .5 0 0\nm ring r 0 0 8 0 0 0 0 0 1 0 9\n",
+    );
+    let octree = bench.run(env!("CARGO_BIN_EXE_oconv"), &[b"s\xff.rad"], b"");
+    bench.write(b"s.oct", &octree.stdout);
+    let rays = [b"-h", &b"-w"[..], b"-I", b"-ab", b"1", b"-ad", b"64", b"-aa", b".1", b"-af", b"a.amb", b"s.oct"];
+    assert!(bench.run(env!("CARGO_BIN_EXE_rtrace"), &rays, b"0 0 0 0 0 1\n").status.success());
+    fs::rename(bench.path(b"a.amb"), bench.path(b"a\xf1.amb")).unwrap();
+    let drawn = bench.run(env!("CARGO_BIN_EXE_rpict"), &[b"-w", b"-x", b"8", b"-y", b"8", b"s.oct"], b"");
+    bench.write(b"p\xf2.hdr", &drawn.stdout);
+    bench.write(b"t\xf3.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let (topng, lookamb, ambrec, obj2mesh, raderr) = (
+        env!("CARGO_BIN_EXE_topng"),
+        env!("CARGO_BIN_EXE_lookamb"),
+        env!("CARGO_BIN_EXE_ambrec"),
+        env!("CARGO_BIN_EXE_obj2mesh"),
+        env!("CARGO_BIN_EXE_raderr"),
+    );
+    for (program, line, made) in [
+        (topng, &[&b"p\xf2.hdr"[..], b"p\xf4.png"][..], &b"p\xf4.png"[..]),
+        (ambrec, &[b"convert", b"a\xf1.amb", b"-o", b"c\xf5.amb"], b"c\xf5.amb"),
+        (obj2mesh, &[b"t\xf3.obj", b"t\xf6.rtm"], b"t\xf6.rtm"),
+    ] {
+        let output = bench.run(program, line, b"");
+        assert!(output.status.success() && bench.path(made).is_file(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    assert!(has(&bench.run(lookamb, &[b"a\xf1.amb"], b"").stdout, b"Position:"));
+    assert!(has(&bench.run(ambrec, &[b"check", b"a\xf1.amb"], b"").stdout, b"a\xf1.amb: sound"));
+    for (program, line, said) in [
+        (topng, &[&b"n\xf7.hdr"[..], b"n.png"][..], &b"topng: cannot open picture \"n\xf7.hdr\""[..]),
+        (lookamb, &[b"n\xf7"], b"n\xf7: file not found"),
+        (lookamb, &[b"-\xf7"], b"lookamb: unknown option '-\xf7'"),
+        (ambrec, &[b"stats", b"n\xf7"], b"ambrec: cannot read \"n\xf7\""),
+        (obj2mesh, &[b"n\xf7"], b"obj2mesh: fatal - cannot open \"n\xf7\""),
+        (raderr, &[b"n\xf7.oct"], b"n\xf7.oct"),
+    ] {
+        let output = bench.run(program, line, b"");
+        assert!(!output.status.success() && has(&output.stderr, said), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    // A measurement of a scene, with a reference and results of such names.
+    let measured: [&[u8]; 16] = [
+        b"s\xff.rad",
+        b"--rungs",
+        b"1",
+        b"--repeats",
+        b"1",
+        b"--size",
+        b"8",
+        b"--passes",
+        b"2",
+        b"--reference",
+        b"r\xf9.ref",
+        b"--csv",
+        b"c\xfa.csv",
+        b"-q",
+        b"--",
+        b"-w",
+    ];
+    let view: [&[u8]; 8] = [b"-vd", b"0", b"0", b"-1", b"-vu", b"0", b"1", b"0"];
+    let eye: [&[u8]; 4] = [b"-vp", b"0", b"0", b"5"];
+    let line = [&measured[..], &eye, &view].concat();
+    let output = bench.run(raderr, &line, b"");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(bench.path(b"r\xf9.ref").is_file() && bench.path(b"c\xfa.csv").is_file());
+}

@@ -179,6 +179,10 @@ fn a_stale_file_is_found_out() {
     assert!(first > 2000);
     bench.warnings("", "dark");
     assert_eq!((size(&bench), bench.files()), (first, 2));
+    // Other wavelengths are no other light: they have no file of their own there, either.
+    let others = bench.warnings("-cw 400 700", "dark");
+    assert!(others.contains("wavelength sampling: \"a.amb.") && others.contains("converted"), "{others}");
+    assert_eq!(bench.files(), 2);
 }
 
 #[test]

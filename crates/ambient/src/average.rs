@@ -1,6 +1,7 @@
 //! What stands for indirect light where the calculation stops: `-av`, or with `-aw` the running logarithmic average of
 //! the records, which counts each computed value times 1 − the assumed reflectance lest it feed on itself.
 
+use crate::observe::LEVELS;
 use crate::params::{ASSUMED_REFLECTANCE, Params};
 use ambit_base::{Colour, EPSILON, Rgb};
 
@@ -8,13 +9,14 @@ use ambit_base::{Colour, EPSILON, Rgb};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Average {
     logarithms: f64,
-    sum: f64,
     count: u64,
+    /// Sum of brightness and number by level of those that are not black.
+    levels: [(f64, u64); LEVELS],
 }
 
 impl Average {
-    /// Counts a record by its values in all passes, unless it is black.
-    pub(crate) fn add(&mut self, values: impl Iterator<Item = Rgb>) {
+    /// Counts a record by its level and its values in all passes, unless it is black.
+    pub(crate) fn add(&mut self, level: u8, values: impl Iterator<Item = Rgb>) {
         let (mut sum, mut passes) = (0.0, 0);
         for value in values {
             sum += f64::from(value.brightness());
@@ -23,14 +25,16 @@ impl Average {
         let b = sum / f64::from(passes.max(1));
         if b > EPSILON {
             self.logarithms += b.ln();
-            self.sum += b;
             self.count += 1;
+            let own = &mut self.levels[usize::from(level).min(LEVELS - 1)];
+            *own = (own.0 + b, own.1 + 1);
         }
     }
 
-    /// The mean brightness of the records that are not black; 0 without any.
-    pub(crate) fn mean(&self) -> f64 {
-        if self.count == 0 { 0.0 } else { self.sum / self.count as f64 }
+    /// The mean brightness of the records of a level (one of [`LEVELS`]) that are not black; 0 without any.
+    pub(crate) fn mean(&self, level: usize) -> f64 {
+        let (sum, count) = self.levels[level];
+        if count == 0 { 0.0 } else { sum / count as f64 }
     }
 
     /// The radiance to use where the calculation stops.
@@ -73,7 +77,7 @@ mod tests {
         assert_eq!(Average::default().fallback(&params), params.value);
         assert_eq!(average(3.0, 2).fallback(&Params { weight: 0, ..params }), params.value);
         let mut black = Average::default();
-        black.add(std::iter::once(Rgb::ZERO));
+        black.add(0, std::iter::once(Rgb::ZERO));
         assert_eq!(black.fallback(&params), params.value);
     }
 }

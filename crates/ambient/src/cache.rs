@@ -141,7 +141,7 @@ impl Cache {
         if !self.store.insert(&record, &self.limits) {
             return false;
         }
-        self.average.add(record.values());
+        self.average.add(record.level, record.values());
         let (position, radius) = (record.position, unwidened(&record));
         self.records.push(record);
         if let Some(reins) = &mut self.reins {

@@ -152,8 +152,17 @@ mod tests {
         DVec3::splat((band.end - band.start) / 400.0)
     }
 
-    fn near(values: &[f32], wanted: &[f32]) {
-        assert!(values.iter().zip(wanted).all(|(a, b)| (a - b).abs() <= 2e-3 * b.max(0.01)), "{values:?} {wanted:?}");
+    /// An observer of one colour: red above 600 nm, green above 500 nm, blue below, each in its own proportion.
+    fn keen(band: &Range<f64>) -> DVec3 {
+        let within = |low: f64, high: f64| (band.end.min(high) - band.start.max(low)).max(0.0) / 100.0;
+        DVec3::new(within(600.0, 1e9), 2.0 * within(500.0, 600.0), 3.0 * within(0.0, 500.0))
+    }
+
+    /// What is read or written is this, as far as bins go, and dark beyond.
+    fn near(values: &[f32], wanted: &[f32], error: f32) {
+        let (bins, rest) = values.split_at(wanted.len());
+        assert!(bins.iter().zip(wanted).all(|(a, b)| (a - b).abs() <= error * b), "{values:?} {wanted:?}");
+        assert!(rest.iter().all(|&v| v == 0.0), "{values:?}");
     }
 
     /// What rtrace 6.0a answers from a file of one record, and what it appends.
@@ -162,13 +171,17 @@ mod tests {
         let three = [2.098_486, 3.153_865, 4.184_7];
         for (run, wanted) in [
             (sampling(6, 380.0, 780.0), &[2.0985, 2.0985, 3.1539, 3.1539, 4.1847, 4.1847][..]),
-            (sampling(9, 380.0, 1000.0), &[0.0, 0.0, 0.0, 1.692_327, 2.098_486, 3.017_687, 3.153_865, 4.118_195]),
+            (
+                sampling(9, 380.0, 1000.0),
+                &[0.0, 0.0, 0.0, 1.692_327, 2.098_486, 3.017_687, 3.153_865, 4.118_195, 4.1847],
+            ),
             (
                 sampling(9, 500.0, 780.0),
                 &[2.0985, 2.0985, 2.0985, 2.0985, 2.852_328, 3.1539, 3.1539, 3.1539, 3.595_651],
             ),
         ] {
-            near(&Conversion::new(&sampling(3, 380.0, 780.0), &run, grey).read(&three), wanted);
+            assert_eq!(run.count, wanted.len());
+            near(&Conversion::new(&sampling(3, 380.0, 780.0), &run, grey).read(&three), wanted, 2e-5);
         }
         let twenty = [
             0.5996, 0.5332, 0.5020, 0.5020, 0.5020, 0.4785, 0.4004, 0.4004, 0.4004, 0.4004, 0.3223, 0.2988, 0.2988,
@@ -176,19 +189,67 @@ mod tests {
         ];
         let narrow = Conversion::new(&sampling(20, 400.0, 700.0), &sampling(6, 380.0, 780.0), grey);
         let read = narrow.read(&twenty).map(|v| v * std::f32::consts::PI);
-        near(&read, &[0.0, 1.352_664, 1.416_785, 1.098_944, 0.786_319, 0.378_893]);
+        near(&read, &[0.0, 1.352_664, 1.416_785, 1.098_944, 0.786_319, 0.378_893], 2e-3);
         // What is appended, by a run in red, green and blue of another range, too.
         let other = Conversion::new(&sampling(3, 380.0, 780.0), &sampling(3, 400.0, 700.0), grey);
-        assert_eq!(other.write(&[0.4730, 0.3449, 0.1815]).map(|v| (v * 512.0) as i32)[..3], [96, 199, 87]);
-        assert_eq!(other.read(&three)[..3], three);
+        let written = other.write(&[0.4730, 0.3449, 0.1815]);
+        assert_eq!(written.map(|v| (v * 512.0) as i32)[..3], [96, 199, 87]);
+        assert!(written[3..].iter().all(|&v| v == 0.0) && other.count() == 3);
+        near(&other.read(&three), &three, 0.0);
     }
 
     #[test]
-    fn a_spectrum_read_as_red_green_and_blue_is_a_colour() {
-        let read = Conversion::new(&sampling(4, 380.0, 780.0), &sampling(3, 380.0, 780.0), grey).read(&[1.0; 4]);
-        let white = TO_XYZ.inverse() * DVec3::ONE;
-        near(&read, &white.as_vec3().to_array());
-        assert!(read[3..].iter().all(|&v| v == 0.0));
+    fn a_spectrum_read_as_red_green_and_blue_is_the_colour_that_the_observer_sees() {
+        let conversion = Conversion::new(&sampling(4, 380.0, 780.0), &sampling(3, 380.0, 780.0), grey);
+        near(&conversion.read(&[1.0; 4]), &(TO_XYZ.inverse() * DVec3::ONE).as_vec3().to_array(), 1e-6);
+        // Bins go from long to short wavelengths: 680 to 780 nm first.
+        let conversion = Conversion::new(&sampling(4, 380.0, 780.0), &sampling(3, 400.0, 700.0), keen);
+        let xyz = [
+            DVec3::new(1.0, 0.0, 0.0),
+            DVec3::new(0.8, 0.4, 0.0),
+            DVec3::new(0.0, 1.6, 0.6),
+            DVec3::new(0.0, 0.0, 3.0),
+        ];
+        let seen = |values: [f32; 4]| xyz.iter().zip(values).map(|(&c, v)| c * f64::from(v)).sum::<DVec3>();
+        // A colour that red, green and blue can make comes out as it is.
+        let values = [1.0, 0.9, 1.1, 0.5];
+        let sum = seen(values);
+        let colour = TO_XYZ.inverse() * sum;
+        assert!(colour.min_element() > 0.0, "{colour}");
+        near(&conversion.read(&values), &colour.as_vec3().to_array(), 1e-6);
+        // What they cannot make loses saturation until no channel is negative, and keeps its brightness.
+        for k in 0..4 {
+            let mut values = [0.0; 4];
+            values[k] = 2.0;
+            let (sum, read) = (seen(values), conversion.read(&values));
+            let read = DVec3::from_array([0, 1, 2].map(|c| f64::from(read[c])));
+            assert!(read.min_element() >= 0.0, "{read}");
+            assert!(((TO_XYZ * read).y - sum.y).abs() <= 1e-6 * sum.y, "{k}: {} {}", (TO_XYZ * read).y, sum.y);
+            assert_eq!(read.min_element(), 0.0, "{read} is as saturated as can be");
+        }
+        // What is written takes no observer.
+        near(&conversion.write(&[3.0, 2.0, 1.0]), &[0.6, 2.8, 1.8, 0.8], 1e-6);
+    }
+
+    /// What is converted keeps its sum over wavelengths, what lies beyond the other's limits is dark.
+    #[test]
+    fn means_keep_the_light_within_common_limits() {
+        let light = |s: &Sampling, v: &[f32]| -> f64 {
+            s.bands().iter().zip(v).map(|(band, &v)| (band.end - band.start) * f64::from(v)).sum()
+        };
+        let values = [0.5, 3.0, 1.0, 0.0, 2.0, 4.0, 0.25];
+        let file = sampling(7, 400.0, 700.0);
+        for run in [sampling(5, 380.0, 780.0), sampling(24, 400.0, 700.0), sampling(7, 400.0, 700.0)] {
+            let there = Conversion::new(&file, &run, grey);
+            let read = there.read(&values);
+            assert!((light(&run, &read) - light(&file, &values)).abs() < 1e-3, "{run}");
+            assert!(read[run.count..].iter().all(|&v| v == 0.0));
+            // The way back is that of the opposite conversion.
+            assert_eq!(there.write(&read), Conversion::new(&run, &file, grey).read(&read));
+        }
+        // Of one bin from 500 to 600 nm, a third of the range, all is kept; the rest stays dark.
+        let narrow = Conversion::new(&sampling(3, 500.0, 600.0), &file, grey).read(&[6.0; 3]);
+        assert!((light(&file, &narrow) - 600.0).abs() < 1e-3 && narrow[0] == 0.0 && narrow[6] == 0.0);
     }
 
     #[test]

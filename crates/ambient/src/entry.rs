@@ -23,6 +23,8 @@ pub(crate) struct Entry {
     light: Light,
 }
 
+const _: () = assert!(size_of::<Entry>() == 128, "a record is two lines of the cache");
+
 impl Entry {
     /// `apart` if bounces are told apart.
     pub(crate) fn of(record: &Record, apart: bool) -> Self {

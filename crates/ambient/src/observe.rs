@@ -5,7 +5,8 @@
 //! look-up in 64, chosen by its place, the records that answer together are compared: with weights ωᵢ and answers vᵢ
 //! around their mean v, `s² = Σ ωᵢ (vᵢ − v)² / Σ ωᵢ` says how far they differ, and `s √Σωᵢ² / Σωᵢ` how uncertain their mean
 //! is if they err independently: the estimated error of interpolation, from noise and extrapolation alike. Both are told
-//! relative to the mean of all records so far, as errors of pictures are: relative to v, dark corners would be all.
+//! by the level of the question, relative to the mean of the level's records so far, as errors of pictures are: relative to
+//! v, dark corners would be all.
 
 use crate::cache::Cache;
 use crate::sampler::{Answer, Query, Sampler};
@@ -29,9 +30,9 @@ const MOST: f64 = 1e4;
 struct Counts {
     asked: [AtomicU64; LEVELS],
     answered: [AtomicU64; LEVELS],
-    compared: AtomicU64,
-    difference: AtomicU64,
-    error: AtomicU64,
+    compared: [AtomicU64; LEVELS],
+    difference: [AtomicU64; LEVELS],
+    error: [AtomicU64; LEVELS],
 }
 
 /// Time since some moment; whoever has a clock lends it.
@@ -73,12 +74,12 @@ pub struct Observed {
     pub asked: [u64; LEVELS],
     /// Those that records answered.
     pub answered: [u64; LEVELS],
-    /// Look-ups whose records were compared: those with two or more.
-    pub compared: u64,
-    /// Difference of the records that answer together, RMS, relative to the mean of all records.
-    pub difference: f64,
-    /// Estimated error of interpolated values, RMS, relative to the mean of all records.
-    pub error: f64,
+    /// Look-ups by level whose records were compared: those with two or more.
+    pub compared: [u64; LEVELS],
+    /// Difference of the records that answer together, RMS, relative to the mean of the level's records.
+    pub difference: [f64; LEVELS],
+    /// Estimated error of interpolated values, RMS, relative to the mean of the level's records.
+    pub error: [f64; LEVELS],
 }
 
 impl Observer {
@@ -93,18 +94,15 @@ impl Observer {
 
     fn total(&self) -> Observed {
         let mut all = Observed::default();
-        let (mut difference, mut error) = (0, 0);
-        for c in &self.0 {
-            for k in 0..LEVELS {
-                all.asked[k] += c.asked[k].load(Relaxed);
-                all.answered[k] += c.answered[k].load(Relaxed);
-            }
-            all.compared += c.compared.load(Relaxed);
-            difference += c.difference.load(Relaxed);
-            error += c.error.load(Relaxed);
+        for k in 0..LEVELS {
+            let sum =
+                |of: fn(&Counts) -> &[AtomicU64; LEVELS]| self.0.iter().map(|c| of(c)[k].load(Relaxed)).sum::<u64>();
+            (all.asked[k], all.answered[k]) = (sum(|c| &c.asked), sum(|c| &c.answered));
+            let count = sum(|c| &c.compared);
+            let rms = |sum: u64| if count > 0 { (sum as f64 / ONE / count as f64).sqrt() } else { 0.0 };
+            (all.compared[k], all.difference[k], all.error[k]) =
+                (count, rms(sum(|c| &c.difference)), rms(sum(|c| &c.error)));
         }
-        let rms = |sum: u64| if all.compared > 0 { (sum as f64 / ONE / all.compared as f64).sqrt() } else { 0.0 };
-        (all.difference, all.error) = (rms(difference), rms(error));
         all
     }
 }
@@ -151,25 +149,25 @@ impl Cache {
             counts.asked[level].fetch_add(1, Relaxed);
             counts.answered[level].fetch_add(u64::from(answer.is_some()), Relaxed);
             if hash_point(query.position).is_multiple_of(CLOSELY) {
-                self.compare(sampler, query, counts);
+                self.compare(sampler, query, level, counts);
             }
         }
         answer.map_or(Answer::Miss, Answer::Value)
     }
 
-    fn compare<S: Sampler>(&self, sampler: &S, query: &Query<S::Origin>, counts: &Counts) {
+    fn compare<S: Sampler>(&self, sampler: &S, query: &Query<S::Origin>, level: usize, counts: &Counts) {
         let parts = self.store.contributions(&self.limits, sampler, query);
         let weights: f64 = parts.iter().map(|p| f64::from(p.0)).sum();
         let mean = parts.iter().map(|p| f64::from(p.0 * p.1.mean())).sum::<f64>() / weights;
-        let whole = self.average.mean();
+        let whole = self.average.mean(level);
         if parts.len() < 2 || mean.is_nan() || whole <= 0.0 {
             return;
         }
         let apart = |p: &(f32, ambit_base::Rgb)| f64::from(p.0) * ((f64::from(p.1.mean()) - mean) / whole).powi(2);
         let difference = (parts.iter().map(apart).sum::<f64>() / weights).min(MOST);
         let error = difference * parts.iter().map(|p| f64::from(p.0).powi(2)).sum::<f64>() / weights.powi(2);
-        counts.compared.fetch_add(1, Relaxed);
-        counts.difference.fetch_add((difference * ONE) as u64, Relaxed);
-        counts.error.fetch_add((error * ONE) as u64, Relaxed);
+        counts.compared[level].fetch_add(1, Relaxed);
+        counts.difference[level].fetch_add((difference * ONE) as u64, Relaxed);
+        counts.error[level].fetch_add((error * ONE) as u64, Relaxed);
     }
 }

@@ -21,6 +21,11 @@ const GOOD_ENOUGH: f32 = 0.05;
 /// Weight from which a hemisphere sample needs no further records. Records beyond it smooth what the eye sees; of deeper
 /// questions hundreds make one value, and a record or two each leave its error as it is, in rooms and boxes.
 pub(crate) const ENOUGH: f32 = 0.25;
+/// The weight from which a question of a level needs no further records.
+fn enough(level: u8) -> f32 {
+    if level == 0 { f32::INFINITY } else { ENOUGH }
+}
+
 /// Depth at which insertion stops whatever the radius: below it cells differ by less than the rounding of coordinates.
 const MAX_DEPTH: u32 = 48;
 /// Relative margin for the rounding of a position plus its reach.
@@ -272,14 +277,13 @@ impl Store {
     /// Sums the records that qualify for a query.
     pub(crate) fn lookup<S: Sampler>(&self, limits: &Limits, sampler: &S, query: &Query<S::Origin>) -> Sum {
         let mut sum = Sum::EMPTY;
-        let enough = if query.level == 0 { f32::INFINITY } else { ENOUGH };
-        self.search(limits, query, enough, |asked, angle, id| {
+        self.search(limits, query, enough(query.level), |asked, angle, id| {
             accumulate(asked, angle, &self.entries[id], || self.light(id, query), sampler, query, &mut sum)
         });
         sum
     }
 
-    /// All records that qualify for a query, one by one: weights and answers. For statistics, not for speed.
+    /// The records that [`Store::lookup`] takes for a query, one by one: weights and answers. For statistics, not for speed.
     pub(crate) fn contributions<S: Sampler>(
         &self,
         limits: &Limits,
@@ -287,7 +291,7 @@ impl Store {
         query: &Query<S::Origin>,
     ) -> Vec<(f32, Rgb)> {
         let mut found = Vec::new();
-        self.search(limits, query, f32::INFINITY, |asked, angle, id| {
+        self.search(limits, query, enough(query.level), |asked, angle, id| {
             let mut sum = Sum::EMPTY;
             let own = accumulate(asked, angle, &self.entries[id], || self.light(id, query), sampler, query, &mut sum);
             found.extend(sum.smoothed().map(|light| (sum.smooth, light.value)));

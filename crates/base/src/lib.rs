@@ -15,10 +15,10 @@ mod warp;
 pub use colour::{Colour, LUMINOUS_EFFICACY, Rgb, TO_XYZ, desaturated};
 pub use frame::Frame;
 pub use hash::{hash_bits, hash_point, mix};
-pub use notify::{Location, Notify, Silent, Stderr};
+pub use notify::{Location, Notify, Silent};
 pub use sequence::Stream;
 pub use transform::{Transform, TransformError};
-pub use warp::{cosine_hemisphere, disk_to_square, square_to_disk};
+pub use warp::{disk_to_square, square_to_disk};
 
 pub use glam::{DMat3, DVec3, Vec3};
 

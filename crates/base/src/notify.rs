@@ -39,20 +39,3 @@ pub struct Silent;
 impl Notify for Silent {
     fn warn(&self, _: &str) {}
 }
-
-/// Prints `PROGRAM: warning - TEXT` on standard error, unless silenced.
-#[derive(Clone, Debug)]
-pub struct Stderr {
-    /// Base name of the running program.
-    pub program: String,
-    /// False drops the warnings (`-w-`).
-    pub warnings: bool,
-}
-
-impl Notify for Stderr {
-    fn warn(&self, text: &str) {
-        if self.warnings {
-            eprintln!("{}: warning - {text}", self.program);
-        }
-    }
-}

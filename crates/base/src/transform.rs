@@ -177,21 +177,10 @@ impl Transform {
         self.backward.linear * p + self.backward.offset
     }
 
-    /// Carries a vector back, scale included.
-    #[inline]
-    pub fn vector_back(&self, v: DVec3) -> DVec3 {
-        self.backward.linear * v
-    }
-
     /// Carries a direction back, its length kept.
     #[inline]
     pub fn direction_back(&self, v: DVec3) -> DVec3 {
         self.backward.linear * v * self.scale.abs()
-    }
-
-    /// True if nothing changes.
-    pub fn is_identity(&self) -> bool {
-        *self == Self::IDENTITY
     }
 }
 

@@ -1,7 +1,6 @@
-//! Area-preserving maps between the unit square, the unit disk and the hemisphere
+//! Area-preserving maps between the unit square and the unit disk, which is a hemisphere seen from above
 //! (Shirley & Chiu 1997, *A Low Distortion Map Between Disk and Square*).
 
-use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// From the unit square to the unit disk, concentrically.
@@ -66,13 +65,6 @@ pub fn disk_to_square(p: f64, q: f64) -> [f64; 2] {
         ((phi - 3.0 * FRAC_PI_2) * r / FRAC_PI_4, -r)
     };
     [(a + 1.0) * 0.5, (b + 1.0) * 0.5]
-}
-
-/// From the unit square to directions with cosine density about +z.
-#[inline]
-pub fn cosine_hemisphere(x: f64, y: f64) -> DVec3 {
-    let [p, q] = square_to_disk(x, y);
-    DVec3::new(p, q, (1.0 - p * p - q * q).max(0.0).sqrt())
 }
 
 #[cfg(test)]

@@ -139,9 +139,4 @@ impl Pass<'_> {
     pub fn flag(&self) -> Flag {
         self.scratch.state.flag
     }
-
-    /// Clears the error flag.
-    pub fn clear_flag(&mut self) {
-        self.scratch.state.flag = Flag::Clear;
-    }
 }

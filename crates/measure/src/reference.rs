@@ -8,10 +8,9 @@
 use crate::error::Error;
 use crate::parts::{Part, cells};
 use crate::score::finite;
-use ambit_file::{Header, Picture, PixelSpace, Replacement};
+use ambit_file::{Header, Picture, PixelSpace, Replacement, path_of};
 use serde::{Deserialize, Serialize};
 use std::io::Write;
-use std::path::Path;
 
 /// Floats of one row.
 const ROW: usize = 6;
@@ -50,7 +49,7 @@ impl Reference {
     /// Reads a reference from its own file, or from a picture (of which neither noise nor origin is known).
     pub fn open(file: &str) -> Result<Self, Error> {
         let bad = |problem: String| Error::Reference { file: file.to_owned(), problem };
-        let bytes = std::fs::read(file).map_err(|source| Error::File { file: file.to_owned(), source })?;
+        let bytes = std::fs::read(path_of(file)).map_err(|source| Error::File { file: file.to_owned(), source })?;
         let (header, start) = Header::parse(&bytes, file).map_err(|e| bad(e.to_string()))?;
         if header.format() != Some("float") {
             return Self::from_picture(&Picture::read(&bytes[..], file).map_err(|e| bad(e.to_string()))?, file);
@@ -107,7 +106,7 @@ impl Reference {
         header.push(format!("{HALVES}={}", if self.b.is_some() { 2 } else { 1 }));
         header.push(format!("NROWS={}", self.a.len()));
         header.extend(["NCOLS=1", "NCOMP=6", "BigEndian=0", "FORMAT=float"]);
-        let mut out = Replacement::create(Path::new(file)).map_err(failed)?;
+        let mut out = Replacement::create(&path_of(file)).map_err(failed)?;
         header.write(&mut out).map_err(failed)?;
         for (a, b) in self.a.iter().zip(self.b.as_ref().unwrap_or(&self.a)) {
             for v in a.iter().chain(b) {

@@ -20,7 +20,7 @@ pub use cube::{Cube, MARGIN};
 pub use error::{Error, ObjProblem, Problem};
 pub use geometry::Geometry;
 pub use mesh::{CompiledMesh, MESH_LIMITS, Mesh, compile_mesh, read_mesh};
-pub use open::open;
+pub use open::Source;
 pub use overlap::{Relation, Volume};
 pub use prepare::{Find, Prepared, prepare, prepare_present};
 pub use read::{Loaded, read_cube, read_octree, read_scene};

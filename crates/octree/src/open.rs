@@ -5,19 +5,37 @@ use ambit_base::Notify;
 use ambit_file::{bytes_of, path_of};
 use ambit_scene::Runner;
 
-/// The bytes of a file, or of what a command prints if the name begins with `!`. A command that fails costs a warning.
-/// A directory is an empty file.
-pub fn open(name: &str, runner: &mut dyn Runner, notify: &dyn Notify) -> Result<Vec<u8>, Error> {
-    let failed = |action| move |source| Error::Open { action, name: name.to_owned(), source };
-    let Some(command) = name.strip_prefix('!') else {
-        return match std::fs::read(path_of(name)) {
-            Err(e) if e.kind() == std::io::ErrorKind::IsADirectory => Ok(Vec::new()),
-            result => result.map_err(failed("cannot open octree file")),
+/// What may be an octree.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Source {
+    /// What messages call it.
+    pub name: String,
+    /// What is to be read.
+    pub bytes: Vec<u8>,
+    /// True if a command printed them that failed.
+    pub failed: bool,
+}
+
+impl Source {
+    /// The bytes of a file, or of what a command prints if the name begins with `!`. A directory is an empty file.
+    pub fn open(name: &str, runner: &mut dyn Runner) -> Result<Self, Error> {
+        let failed = |action| move |source| Error::Open { action, name: name.to_owned(), source };
+        let shown = name.to_owned();
+        let Some(command) = name.strip_prefix('!') else {
+            let bytes = match std::fs::read(path_of(name)) {
+                Err(e) if e.kind() == std::io::ErrorKind::IsADirectory => Vec::new(),
+                result => result.map_err(failed("cannot open octree file"))?,
+            };
+            return Ok(Self { name: shown, bytes, failed: false });
         };
-    };
-    let output = runner.run(&bytes_of(command)).map_err(failed("cannot execute"))?;
-    if !output.success {
-        notify.warn(&format!("bad status from \"{name}\""));
+        let output = runner.run(&bytes_of(command)).map_err(failed("cannot execute"))?;
+        Ok(Self { name: shown, bytes: output.text, failed: !output.success })
     }
-    Ok(output.text)
+
+    /// Warns if the command failed. It is called once the octree has been read: whoever gets none needs not know.
+    pub fn complain(&self, notify: &dyn Notify) {
+        if self.failed {
+            notify.warn(&format!("bad status from \"{}\"", self.name));
+        }
+    }
 }

@@ -31,7 +31,7 @@ pub use ambit_ambient::{Fingerprint, Reuse};
 pub use error::Error;
 pub use fingerprint::SceneFingerprint;
 pub use options::{Ambient, Direct, Limits, Medium, Options, Selection, Specular};
-pub use prepare::{Definition, Environment, Loaded, OctreeSource, load};
+pub use prepare::{Definition, Environment, Loaded, load};
 pub use renderer::Renderer;
 pub use request::{Aim, Answer, Request};
 pub use sharing::Store;

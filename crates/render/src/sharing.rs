@@ -3,7 +3,7 @@
 
 use crate::spectral::tristimulus;
 use crate::{Error, Renderer};
-use ambit_ambient::{AmbientFile, FileError, Fingerprint, Opening, PATIENCE, Reuse};
+use ambit_ambient::{AmbientFile, Components, FileError, Fingerprint, Opening, PATIENCE, Reuse};
 use ambit_base::Notify;
 use std::path::Path;
 
@@ -34,13 +34,8 @@ pub(crate) struct Sharing {
 impl Renderer {
     /// Loads the records of an ambient file and shares new ones through it; creates it if absent.
     pub fn share(&mut self, store: &Store<'_>, notify: &dyn Notify) -> Result<(), Error> {
-        let Store { path, header, fingerprint, reuse, owner } = *store;
         let components = &self.options.spectrum.components(self.passes());
-        let splits = self.options.spectrum.limits();
-        let fingerprint = Some(fingerprint);
-        let observer = tristimulus;
-        let opening = Opening { header, components, splits, observer, fingerprint, reuse, patience: PATIENCE, owner };
-        let opened = AmbientFile::open(path, &opening, notify).map_err(|e| failed(&e))?;
+        let opened = AmbientFile::open(store.path, &self.opening(store, components), notify).map_err(|e| failed(&e))?;
         let cache = self.cache_mut();
         cache.quantise(components.clone());
         if let Some(smoothing) = opened.smoothing {
@@ -50,6 +45,24 @@ impl Renderer {
         let handed = cache.records().len();
         self.sharing = opened.file.map(|file| Sharing { file, handed, trouble: false });
         Ok(())
+    }
+
+    /// Smooths no more than the ambient file's records will allow, from now on, and leaves it closed: what is estimated
+    /// before it is shared is as what comes.
+    pub fn foresee(&mut self, store: &Store<'_>) {
+        let components = &self.options.spectrum.components(self.passes());
+        if let Some(smoothing) = AmbientFile::smoothing(store.path, &self.opening(store, components)) {
+            let own = &mut self.options.ambient.smoothing;
+            *own = own.min(smoothing);
+            self.cache_mut().smooth_at_most(smoothing);
+        }
+    }
+
+    fn opening<'a>(&self, store: &Store<'a>, components: &'a Components) -> Opening<'a> {
+        let Store { header, fingerprint, reuse, owner, .. } = *store;
+        let splits = self.options.spectrum.limits();
+        let (observer, fingerprint, patience) = (tristimulus, Some(fingerprint), PATIENCE);
+        Opening { header, components, splits, observer, fingerprint, reuse, patience, owner }
     }
 
     /// Hands records computed since the last call to the ambient file, and takes in those of others.

@@ -21,8 +21,6 @@ const LIKELIEST: f32 = 0.9999;
 const MOST: usize = 1_000_000;
 /// So many paths at once are only where each becomes several.
 const CROWD: usize = 10_000;
-/// Bounces of a path that is followed one inside the other, for all of which there is room on the stack.
-const MOST_NESTED: u32 = 10_000;
 /// Tag of the number that decides; the far side's is the next.
 const SURVIVAL: u64 = 0xe0;
 
@@ -52,18 +50,13 @@ impl<O: Observer> Walk<'_, O> {
     /// Follows the rest of a path inside of what its beginning is followed by.
     fn nested(&mut self, ray: &mut Ray<'_>, coefficient: Rgb, query: &Query<Origin>) {
         let Some(mut child) = self.continued(query) else { return };
-        if self.work.nested >= MOST_NESTED {
-            self.fail(Error::user(format!("trees of rays with more than {MOST_NESTED} bounces are not supported")));
-        }
         if self.tracer.scene.fault.is_set() {
             return;
         }
         child.parent = Some(ray);
         child.throughput = ray.throughput * ray.attenuation() * coefficient;
         child.coefficient = coefficient;
-        self.work.nested += 1;
         self.evaluate(&mut child);
-        self.work.nested -= 1;
         let value = child.value;
         ray.value += coefficient * value;
     }

@@ -17,7 +17,7 @@ pub(crate) struct Work {
     pub(crate) chosen: Vec<Chosen>,
     /// Candidates as they are ranked.
     pub(crate) ranks: Vec<u64>,
-    /// How deep paths without end are followed one inside the other.
+    /// Rays that wait for each other.
     pub(crate) nested: u32,
     pub(crate) cal: ambit_cal::Scratch,
     /// Shadow tests since the last batch.

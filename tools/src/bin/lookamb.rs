@@ -2,7 +2,8 @@
 
 use ambit_ambient::{Components, FORMAT, Layout, Record, TextForm, scan_header};
 use ambit_base::{DVec3, Rgb};
-use ambit_file::{Header, command_line};
+use ambit_cli::{StandardOutput, VERSION, answer};
+use ambit_file::{Header, bytes_of, command_line, word_of};
 use ambit_render::Spectrum;
 use std::env::args_os;
 use std::ffi::OsString;
@@ -37,10 +38,8 @@ struct Options {
 
 fn main() -> ExitCode {
     match run(&args_os().collect::<Vec<_>>()) {
-        // A reader that has seen enough is no failure.
-        Err(Failure::Output(e)) if e.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("{failure}");
+            tell(&failure);
             ExitCode::FAILURE
         }
         Ok(()) => ExitCode::SUCCESS,
@@ -75,12 +74,18 @@ fn run(words: &[OsString]) -> Result<(), Failure> {
     let mut file = None;
     for word in words_left.by_ref() {
         match word.as_bytes() {
-            b"--help" => return print(HELP),
-            b"--version" => return print(&format!("{}\n", ambit_cli::VERSION)),
+            b"--help" => {
+                answer(HELP.as_bytes());
+                return Ok(());
+            }
+            b"--version" => {
+                answer(format!("{VERSION}\n").as_bytes());
+                return Ok(());
+            }
             [b'-', b'd', ..] => options.form = TextForm::Tabular,
             [b'-', b'h', ..] => options.header = false,
             [b'-', b'r', ..] => options.reverse = true,
-            [b'-', ..] => return Err(Failure::Option(word.to_string_lossy().into_owned())),
+            [b'-', ..] => return Err(Failure::Option(word_of(word))),
             _ => {
                 file = Some(word);
                 break;
@@ -89,7 +94,7 @@ fn run(words: &[OsString]) -> Result<(), Failure> {
     }
     let mut bytes = Vec::new();
     let name = if let Some(path) = file {
-        let name = path.to_string_lossy().into_owned();
+        let name = word_of(path);
         let mut file = File::open(path).map_err(|_| Failure::Missing(name.clone()))?;
         file.read_to_end(&mut bytes).map_err(Failure::Input)?;
         name
@@ -97,7 +102,7 @@ fn run(words: &[OsString]) -> Result<(), Failure> {
         io::stdin().lock().read_to_end(&mut bytes).map_err(Failure::Input)?;
         "standard input".to_owned()
     };
-    let mut out = BufWriter::new(ambit_cli::StandardOutput::new());
+    let mut out = BufWriter::new(StandardOutput::ending());
     if options.reverse {
         let line = command_line(b"lookamb", words.iter().skip(1).map(|w| w.as_bytes()));
         to_binary(&bytes, &name, options, &line, &mut out)?;
@@ -107,8 +112,9 @@ fn run(words: &[OsString]) -> Result<(), Failure> {
     out.flush().map_err(Failure::Output)
 }
 
-fn print(text: &str) -> Result<(), Failure> {
-    io::stdout().write_all(text.as_bytes()).map_err(Failure::Output)
+/// Says something on standard error.
+fn tell(text: &impl std::fmt::Display) {
+    let _ = io::stderr().write_all(&bytes_of(&format!("{text}\n")));
 }
 
 /// The lines of a header that text and binary share.
@@ -182,7 +188,7 @@ fn to_binary(bytes: &[u8], name: &str, options: Options, line: &[u8], out: &mut 
             }
             Err(problem) => {
                 // Radiance stops here without a word.
-                eprintln!("lookamb: warning - stopped at {problem}");
+                tell(&format_args!("lookamb: warning - stopped at {problem}"));
                 break;
             }
         }

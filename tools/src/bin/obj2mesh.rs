@@ -2,11 +2,11 @@
 
 use ambit_base::Notify;
 use ambit_cli::{Class, ConsoleMessages, Failure, VERSION};
-use ambit_file::{Header, bytes_of, command_line, path_of};
+use ambit_file::{Header, bytes_of, command_line, os_text, path_of};
 use ambit_octree::{Error, Limits, MESH_LIMITS, compile_mesh};
 use ambit_scene::{ErrorClass, Reader, Scene, Shell};
 use std::fs::File;
-use std::io::{BufWriter, Read, stdin};
+use std::io::{BufWriter, Read, Write, stdin};
 use std::process::ExitCode;
 
 const HELP: &str = "\
@@ -118,7 +118,7 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Failure> {
     }
     let mesh = compile_mesh(&text, &name, materials, request.limits, &notify).map_err(|e| failure(&e))?;
     if request.verbose {
-        eprint!("{mesh}");
+        let _ = write!(std::io::stderr(), "{mesh}");
     }
     let mut header = Header::empty();
     header.push("#?RADIANCE");
@@ -147,5 +147,10 @@ fn failure(e: &Error) -> Failure {
         ErrorClass::System => Class::System,
         ErrorClass::Internal => Class::Internal,
     };
-    Failure { class, text: e.to_string() }
+    let text = match e {
+        // As Radiance says it of meshes.
+        Error::Write(e) => format!("output error in writescene: {}", os_text(e)),
+        _ => e.to_string(),
+    };
+    Failure { class, text }
 }

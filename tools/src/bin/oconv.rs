@@ -3,7 +3,7 @@
 use ambit_base::{DVec3, Location, Notify};
 use ambit_cli::{Class, ConsoleMessages, Failure, StandardOutput, VERSION, answer};
 use ambit_file::{Header, Library, SearchPath, bytes_of, command_line, variable, word_of};
-use ambit_octree::{Cube, Error, Find, Limits, Objects, Prepared, Tree};
+use ambit_octree::{Cube, Error, Find, Limits, Objects, Prepared, Source, Tree};
 use ambit_scene::{ErrorClass, Reader, Scene, Shell};
 use std::io::BufWriter;
 use std::process::ExitCode;
@@ -184,8 +184,9 @@ fn convert(request: &Request, header: &mut Header, find: &Find<'_>, notify: &dyn
     let mut frozen = request.frozen;
     let mut start = None;
     if let Some(name) = &request.input {
-        let bytes = ambit_octree::open(name, &mut Shell, notify)?;
-        let (loaded, tree) = ambit_octree::read_octree(&bytes, name, &mut scene, &mut Shell, notify)?;
+        let source = Source::open(name, &mut Shell)?;
+        let (loaded, tree) = ambit_octree::read_octree(&source.bytes, name, &mut scene, &mut Shell, notify)?;
+        source.complain(notify);
         header.extend(loaded.header.lines_without_format());
         if loaded.frozen && !frozen && !request.files.iter().any(|f| f == "-") {
             notify.warn("frozen octree");

@@ -1,8 +1,8 @@
 //! topng: a Radiance picture as a PNG, which any program shows.
 
 use ambit_base::Rgb;
-use ambit_file::{Exposure, Picture, Replacement, Transfer, write_png};
-use std::path::Path;
+use ambit_cli::{ConsoleMessages, answer};
+use ambit_file::{Exposure, Picture, Replacement, Transfer, path_of, word_of, write_png};
 use std::process::ExitCode;
 
 const HELP: &str = "\
@@ -17,11 +17,11 @@ brightness to a medium grey.
 ";
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<String> = std::env::args_os().skip(1).map(|word| word_of(&word)).collect();
     match run(&arguments.iter().map(String::as_str).collect::<Vec<_>>()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
-            eprintln!("topng: {message}");
+            ConsoleMessages { program: "topng".to_owned(), warnings: true }.print(message);
             ExitCode::FAILURE
         }
     }
@@ -33,7 +33,7 @@ fn run(arguments: &[&str]) -> Result<(), String> {
     let (picture, png) = loop {
         match *rest {
             ["--help"] => {
-                print!("{HELP}");
+                answer(HELP.as_bytes());
                 return Ok(());
             }
             ["-e", value, ..] => {
@@ -51,7 +51,7 @@ fn run(arguments: &[&str]) -> Result<(), String> {
     let pixels = smaller(Picture::open(picture).map_err(|e| e.to_string())?, shrink);
     let exposure = Exposure::Factor(Exposure::Automatic.factor(&pixels) * f64::exp2(stops));
     let failed = |e: &dyn std::fmt::Display| format!("{png}: {e}");
-    let mut out = Replacement::create(Path::new(png)).map_err(|e| failed(&e))?;
+    let mut out = Replacement::create(&path_of(png)).map_err(|e| failed(&e))?;
     write_png(&pixels, exposure, Transfer::Srgb, &mut out).map_err(|e| failed(&e))?;
     out.commit().map_err(|e| failed(&e))
 }

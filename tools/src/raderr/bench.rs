@@ -2,7 +2,7 @@
 
 use super::process::Program;
 use ambit_ambient::{Components, scan_header};
-use ambit_file::Picture;
+use ambit_file::{Picture, name_of};
 use ambit_measure::{Bench, Error, Job, Output, Part};
 use std::path::{Path, PathBuf};
 
@@ -75,12 +75,12 @@ impl Bench for Runner {
         let records = self.scratch.join("records.amb");
         if job.fresh && records.exists() {
             std::fs::remove_file(&records)
-                .map_err(|source| Error::File { file: records.display().to_string(), source })?;
+                .map_err(|source| Error::File { file: name_of(&records).into_owned(), source })?;
         }
         if job.timed {
-            words.extend(["-af".to_owned(), records.display().to_string()]);
+            words.extend(["-af".to_owned(), name_of(&records).into_owned()]);
         }
-        words.push(self.octree.display().to_string());
+        words.push(name_of(&self.octree).into_owned());
         let input = match &self.target {
             Target::Views(_) => None,
             Target::Sensors(file) | Target::Rays(file) => Some(file.as_path()),
@@ -94,21 +94,21 @@ impl Bench for Runner {
 
     fn say(&mut self, line: &str) {
         if !self.quiet {
-            eprintln!("raderr: {line}");
+            super::tell(line);
         }
     }
 }
 
 /// The pixels of a picture, exposure undone.
 fn picture(file: &Path) -> Result<(Part, Vec<[f32; 3]>), Error> {
-    let name = file.display().to_string();
+    let name = name_of(file).into_owned();
     let picture = Picture::open(&name).map_err(|e| Error::Program(format!("what rpict wrote is no picture: {e}")))?;
     ambit_measure::radiance(&picture, &name)
 }
 
 /// The numbers that rtrace printed, three a line.
 fn numbers(file: &Path) -> Result<(Part, Vec<[f32; 3]>), Error> {
-    let name = file.display().to_string();
+    let name = name_of(file).into_owned();
     let text = std::fs::read_to_string(file).map_err(|source| Error::File { file: name, source })?;
     let rows: Result<Vec<[f32; 3]>, Error> = (1..)
         .zip(text.lines().filter(|l| !l.trim().is_empty()))
@@ -125,7 +125,7 @@ fn numbers(file: &Path) -> Result<(Part, Vec<[f32; 3]>), Error> {
 
 /// How many records an ambient file holds; `None` without a file.
 fn count_records(file: &Path) -> Result<Option<u64>, Error> {
-    let name = file.display().to_string();
+    let name = name_of(file).into_owned();
     let bytes = match std::fs::read(file) {
         Ok(bytes) => bytes,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),

@@ -8,8 +8,8 @@ mod options;
 mod process;
 mod reference;
 
-use ambit_cli::VERSION;
-use ambit_file::Replacement;
+use ambit_cli::{StandardOutput, VERSION};
+use ambit_file::{Replacement, bytes_of, name_of, word_of};
 use ambit_measure::{
     Entry, Error, Ladder, Plan, PlotSize, Program as Named, ReferenceInfo, Report, Side, measure, page, png, svg,
     table, to_csv, to_json,
@@ -38,26 +38,33 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         }
     };
     let done = match &options.task {
-        _ if options.man => manual(),
+        _ if options.man => {
+            manual();
+            Ok(())
+        }
         Some(Task::Page { out, command, results }) => write_page(out, command, results),
         None => run(&options.measure),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(e) => {
-            eprintln!("raderr: {e}");
+            tell(&e.to_string());
             ExitCode::FAILURE
         }
     }
 }
 
+/// Says something on standard error.
+fn tell(text: &str) {
+    let _ = std::io::stderr().write_all(&bytes_of(&format!("raderr: {text}\n")));
+}
+
 /// Prints the manual page.
-fn manual() -> Result<(), Error> {
+fn manual() {
     let mut text = Vec::new();
-    let print = clap_mangen::Man::new(Options::command()).render(&mut text);
-    print
-        .and_then(|()| std::io::stdout().write_all(&text))
-        .map_err(|source| Error::File { file: "output".to_owned(), source })
+    // Writing to memory does not fail.
+    let _ = clap_mangen::Man::new(Options::command()).render(&mut text);
+    ambit_cli::answer(&text);
 }
 
 /// Measures and writes the results.
@@ -66,7 +73,7 @@ fn run(options: &Measure) -> Result<(), Error> {
     let folder = folder.map_err(|source| Error::File { file: "scratch folder".to_owned(), source })?;
     let (target, common) = target(options);
     let ladder = match &options.ladder {
-        Some(file) => Ladder::parse(&read(file)?, &file.display().to_string())?,
+        Some(file) => Ladder::parse(&read(file)?, &name_of(file))?,
         None => Ladder::standard(),
     };
     let ladder = match options.rungs {
@@ -153,7 +160,7 @@ fn target(options: &Measure) -> (Target, Vec<String>) {
         }
     };
     let mut common: Vec<String> = own.split(' ').chain(COMMON.split(' ')).map(str::to_owned).collect();
-    common.extend(options.common.iter().cloned());
+    common.extend(options.common.iter().map(|word| word_of(word)));
     (target, common)
 }
 
@@ -177,15 +184,15 @@ fn beside(name: &str) -> Result<PathBuf, Error> {
 /// The octree itself, or one that oconv makes of scene files, frozen: then its bytes tell the scene.
 fn octree(scene: &[PathBuf], folder: &Path) -> Result<PathBuf, Error> {
     if let [file] = scene {
-        let bytes = std::fs::read(file).map_err(|source| Error::File { file: file.display().to_string(), source })?;
-        let header = ambit_file::Header::parse(&bytes, &file.display().to_string());
+        let bytes = std::fs::read(file).map_err(|source| Error::File { file: name_of(file).into_owned(), source })?;
+        let header = ambit_file::Header::parse(&bytes, &name_of(file));
         if header.is_ok_and(|(h, _)| h.format() == Some("Radiance_octree")) {
             return Ok(file.clone());
         }
     }
     let out = folder.join("scene.oct");
     let oconv = Program::unasked("oconv", &beside("oconv")?, None, "-f -w");
-    let words: Vec<String> = scene.iter().map(|f| f.display().to_string()).collect();
+    let words: Vec<String> = scene.iter().map(|f| name_of(f).into_owned()).collect();
     oconv.run(&words, None, &out)?;
     Ok(out)
 }
@@ -196,12 +203,12 @@ fn title(scene: &[PathBuf]) -> String {
 }
 
 fn read(file: &Path) -> Result<String, Error> {
-    std::fs::read_to_string(file).map_err(|source| Error::File { file: file.display().to_string(), source })
+    std::fs::read_to_string(file).map_err(|source| Error::File { file: name_of(file).into_owned(), source })
 }
 
 fn write(file: &Path, bytes: &[u8]) -> Result<(), Error> {
     let written = Replacement::create(file).and_then(|mut out| out.write_all(bytes).and_then(|()| out.commit()));
-    written.map_err(|source| Error::File { file: file.display().to_string(), source })
+    written.map_err(|source| Error::File { file: name_of(file).into_owned(), source })
 }
 
 /// Files first, so that a closed output loses none of them.
@@ -218,21 +225,17 @@ fn write_results(options: &Measure, report: &Report) -> Result<(), Error> {
     if let Some(file) = &options.png {
         write(file, &png(report, PlotSize::default())?)?;
     }
-    match std::io::stdout().write_all(table(report).as_bytes()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Error::File { file: "standard output".to_owned(), source: e })
-        }
-        _ => Ok(()),
-    }
+    let written = StandardOutput::ending().write_all(table(report).as_bytes());
+    written.map_err(|source| Error::File { file: "standard output".to_owned(), source })
 }
 
 /// The page of kept results; plots go into a folder of the page's name.
 fn write_page(out: &Path, command: &str, results: &[PathBuf]) -> Result<(), Error> {
     let plots = out.with_extension("");
-    std::fs::create_dir_all(&plots).map_err(|source| Error::File { file: plots.display().to_string(), source })?;
+    std::fs::create_dir_all(&plots).map_err(|source| Error::File { file: name_of(&plots).into_owned(), source })?;
     let mut entries = Vec::new();
     for file in results {
-        let report = Report::from_json(&read(file)?, &file.display().to_string())?;
+        let report = Report::from_json(&read(file)?, &name_of(file))?;
         let name = file.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default() + ".svg";
         write(&plots.join(&name), svg(&report, PlotSize::default())?.as_bytes())?;
         let folder = plots.file_name().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();

@@ -1,6 +1,7 @@
 //! The options of raderr.
 
 use clap::{Args, Parser, Subcommand};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// What is said after the options.
@@ -63,7 +64,7 @@ pub(super) struct Measure {
     pub(super) scene: Vec<PathBuf>,
     /// Options of every run of every program, such as a view: -vf FILE -ab 3
     #[arg(last = true, value_name = "OPTIONS")]
-    pub(super) common: Vec<String>,
+    pub(super) common: Vec<OsString>,
 
     /// A view as rpict's options; several are rendered one after the other
     #[arg(long, value_name = "WORDS", allow_hyphen_values = true, help_heading = "What is computed")]

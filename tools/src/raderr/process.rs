@@ -1,5 +1,6 @@
 //! One process: what it costs, what it leaves, and why it failed.
 
+use ambit_file::{name_of, path_of, text_of};
 use ambit_measure::{Cost, Error};
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -38,13 +39,13 @@ impl Program {
             command.env("RAYPATH", raypath);
         }
         let answer = command.arg("-version").stdin(Stdio::null()).output();
-        let answer = answer.map_err(|source| Error::File { file: path.display().to_string(), source })?;
-        let version = String::from_utf8_lossy(&answer.stdout).lines().next().unwrap_or_default().trim().to_owned();
+        let answer = answer.map_err(|source| Error::File { file: name_of(path).into_owned(), source })?;
+        let version = text_of(&answer.stdout).lines().next().unwrap_or_default().trim().to_owned();
         if !answer.status.success() || version.is_empty() {
-            let said = String::from_utf8_lossy(&answer.stderr).lines().next().unwrap_or("nothing").to_owned();
+            let said = text_of(&answer.stderr).lines().next().unwrap_or("nothing").to_owned();
             return Err(Error::Program(format!(
                 "{}: does not answer -version as rpict and rtrace do: {}, said {said}",
-                path.display(),
+                name_of(path),
                 answer.status
             )));
         }
@@ -61,7 +62,7 @@ impl Program {
 
     /// Runs it with its own words and these, standard output to a file.
     pub(super) fn run(&self, words: &[String], input: Option<&Path>, output: &Path) -> Result<Finished, Error> {
-        let file = |path: &Path, source| Error::File { file: path.display().to_string(), source };
+        let file = |path: &Path, source| Error::File { file: name_of(path).into_owned(), source };
         let said = output.with_extension("messages");
         let stdin = match input {
             Some(path) => Stdio::from(File::open(path).map_err(|e| file(path, e))?),
@@ -70,7 +71,11 @@ impl Program {
         let stdout = File::create(output).map_err(|e| file(output, e))?;
         let stderr = File::create(&said).map_err(|e| file(&said, e))?;
         let mut command = Command::new(&self.path);
-        command.args(&self.words).args(words).stdin(stdin).stdout(stdout).stderr(stderr);
+        command
+            .args(self.words.iter().chain(words).map(|word| path_of(word)))
+            .stdin(stdin)
+            .stdout(stdout)
+            .stderr(stderr);
         if let Some(raypath) = &self.raypath {
             command.env("RAYPATH", raypath);
         }
@@ -79,15 +84,15 @@ impl Program {
         let used = child.wait4().map_err(|e| file(&self.path, e))?;
         let wall = start.elapsed().as_secs_f64();
         let bytes = std::fs::read(&said).map_err(|e| file(&said, e))?;
-        let messages = String::from_utf8_lossy(&bytes).into_owned();
+        let messages = text_of(&bytes).into_owned();
         if !used.status.success() {
             let reason = messages.lines().find(|l| !l.contains("warning")).unwrap_or("nothing on standard error");
             return Err(Error::Program(format!(
                 "{} ({}): {}: {reason}\n  command: {} {}",
                 self.name,
-                self.path.display(),
+                name_of(&self.path),
                 used.status,
-                self.path.display(),
+                name_of(&self.path),
                 [&self.words[..], words].concat().join(" ")
             )));
         }

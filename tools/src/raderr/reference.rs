@@ -4,6 +4,7 @@ use super::bench::{Runner, Target};
 use super::options::Measure;
 use ambit_base::mix;
 use ambit_cli::VERSION;
+use ambit_file::{name_of, path_of};
 use ambit_measure::{Bench, Error, Part, Plan, Reference, make_reference};
 use std::path::Path;
 
@@ -21,7 +22,7 @@ pub(super) fn obtain(runner: &mut Runner, plan: &Plan, side: usize, options: &Me
     let there: Vec<_> = options.reference.iter().filter(|f| f.exists()).collect();
     if !there.is_empty() && there.len() == options.reference.len() {
         let read = there.iter().map(|f| {
-            let name = f.display().to_string();
+            let name = name_of(f).into_owned();
             let reference = Reference::open(&name)?;
             if !options.any_reference {
                 fits(&reference, &name, OPTIONS, &all, "set of options")?;
@@ -36,7 +37,7 @@ pub(super) fn obtain(runner: &mut Runner, plan: &Plan, side: usize, options: &Me
     }
     if options.reference.len() > 1 {
         let missing =
-            options.reference.iter().find(|f| !f.exists()).map_or_else(String::new, |f| f.display().to_string());
+            options.reference.iter().find(|f| !f.exists()).map_or_else(String::new, |f| name_of(f).into_owned());
         let problem = "not found (of several references all must be there; one alone is made)".to_owned();
         return Err(Error::Reference { file: missing, problem });
     }
@@ -47,7 +48,7 @@ pub(super) fn obtain(runner: &mut Runner, plan: &Plan, side: usize, options: &Me
         format!("SOFTWARE=raderr, {VERSION}"),
         format!(
             "MADE_BY={} ({})",
-            [&[program.path.display().to_string()], &program.words[..]].concat().join(" "),
+            [&[name_of(&program.path).into_owned()], &program.words[..]].concat().join(" "),
             program.version
         ),
         format!("{OPTIONS}={all}"),
@@ -56,7 +57,7 @@ pub(super) fn obtain(runner: &mut Runner, plan: &Plan, side: usize, options: &Me
     header.append(&mut reference.header);
     reference.header = header;
     if let Some(file) = options.reference.first() {
-        reference.write(&file.display().to_string())?;
+        reference.write(&name_of(file))?;
     }
     Ok(reference)
 }
@@ -76,7 +77,7 @@ fn fits(reference: &Reference, file: &str, line: &str, wanted: &str, what: &str)
 /// Hash of the octree, the words of the views, the view files they name, and the sensors.
 fn identity(runner: &Runner) -> Result<u64, Error> {
     let read =
-        |path: &Path| std::fs::read(path).map_err(|source| Error::File { file: path.display().to_string(), source });
+        |path: &Path| std::fs::read(path).map_err(|source| Error::File { file: name_of(path).into_owned(), source });
     let mut hash = bytes(0, &read(&runner.octree)?);
     match &runner.target {
         Target::Sensors(file) | Target::Rays(file) => hash = bytes(hash, &read(file)?),
@@ -87,7 +88,7 @@ fn identity(runner: &Runner) -> Result<u64, Error> {
                     hash = bytes(hash, words.join(" ").as_bytes());
                 }
                 for pair in words.windows(2).filter(|p| p[0] == "-vf") {
-                    hash = bytes(hash, &read(Path::new(&pair[1]))?);
+                    hash = bytes(hash, &read(&path_of(&pair[1]))?);
                 }
             }
         }

@@ -10,7 +10,7 @@ use crate::light::{Light, Scene};
 use crate::session::{Session, Stop};
 use ambit_base::{Notify, Rgb};
 use ambit_cli::{Failure, PictureOptions};
-use ambit_file::{PixelSpace, Projection, View, fit_resolution};
+use ambit_file::{PixelSpace, Projection, View, fit_resolution, name_of};
 use ambit_render::Answer;
 use ambit_render::picture::{Band, Camera, Lens, Order, Pixel, Sampler, SmallSources};
 
@@ -120,7 +120,7 @@ impl Picture<'_> {
         if let Some(r) = &frame.recovered {
             output.codes(&r.lines)?;
             std::fs::remove_file(&r.file)
-                .map_err(|e| Failure::system(format!("cannot remove \"{}\"", r.file.display()), &e))?;
+                .map_err(|e| Failure::system(format!("cannot remove \"{}\"", name_of(&r.file)), &e))?;
         }
         if empty {
             self.session.messages.warn("empty output picture");

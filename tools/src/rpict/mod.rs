@@ -10,12 +10,12 @@ mod shots;
 mod watch;
 
 use crate::colour::Conversion;
-use crate::light::Scene;
+use crate::light::{Scene, octree};
 use crate::session::{Session, Stop, Tool, on_deep_stack, split};
 use ambit_base::Notify;
 use ambit_cli::{About, COMMON_FEATURES, Failure, Features, Output, PICTURE_FEATURES, PictureOptions, picture_table};
 use ambit_file::PixelSpace;
-use ambit_render::OctreeSource;
+use ambit_octree::Source;
 use frame::{Frame, Picture};
 use std::ffi::OsString;
 use std::io::{Read, stdin};
@@ -94,7 +94,8 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         options.view.set_up().map_err(|e| Failure::user(e.to_string()))?;
     }
     session.prepare(&options.common)?;
-    let (source, name) = source(session)?;
+    let source = source(session)?;
+    let name = source.name.clone();
     let mut scene = Scene::open(session, source, &options.rendering, false, options.common.output)?;
     if let Some(error) = options.rendering.goal {
         options.rendering.options = pilot::choose(session, &options, space(&options), &mut scene, error)?;
@@ -105,17 +106,13 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     result.and(scene.close())
 }
 
-fn source(session: &Session) -> Result<(OctreeSource, String), Stop> {
-    let Some(name) = session.octree.clone() else {
-        let mut bytes = Vec::new();
-        let name = "standard input".to_owned();
-        stdin().lock().read_to_end(&mut bytes).map_err(|e| Failure::system("cannot read standard input", &e))?;
-        return Ok((OctreeSource::Bytes { name: name.clone(), bytes }, name));
-    };
-    Ok(match name.strip_prefix('!') {
-        Some(command) => (OctreeSource::Command(command.to_owned()), name.clone()),
-        None => (OctreeSource::File(name.clone()), name),
-    })
+fn source(session: &Session) -> Result<Source, Stop> {
+    if let Some(name) = &session.octree {
+        return octree(name);
+    }
+    let mut bytes = Vec::new();
+    stdin().lock().read_to_end(&mut bytes).map_err(|e| Failure::system("cannot read standard input", &e))?;
+    Ok(Source { name: "standard input".to_owned(), bytes, failed: false })
 }
 
 /// The space of the pixels that are written.

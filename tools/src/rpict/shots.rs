@@ -38,3 +38,59 @@ impl Shots {
         Ok(all)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ambit_base::{DVec3, FAR, Rgb};
+    use ambit_render::{Aim, Visit};
+    use ambit_scene::ObjectId;
+
+    /// A light whose radiance is the ray's number; it insists on being given the memory of the answers before.
+    #[derive(Default)]
+    struct Plain(Option<(usize, *const Answer)>);
+
+    impl Light for Plain {
+        fn trace(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Stop> {
+            if let Some(before) = self.0 {
+                assert_eq!((answers.len(), answers.as_ptr()), before, "other memory than before");
+            }
+            answers.clear();
+            answers.extend(
+                requests
+                    .iter()
+                    .map(|r| Answer { value: Rgb::splat(r.index as f32), ..Answer::nothing(r.origin, r.direction) }),
+            );
+            self.0 = Some((answers.len(), answers.as_ptr()));
+            Ok(())
+        }
+
+        fn trace_tree(&mut self, _: &Request, _: Visit<'_>) -> Result<Answer, Stop> {
+            unreachable!("pictures ask for no trees")
+        }
+
+        fn name(&self, _: ObjectId) -> &[u8] {
+            b"it"
+        }
+    }
+
+    #[test]
+    fn batches_use_the_memory_of_those_before() {
+        let (mut shots, mut light) = (Shots::default(), Plain::default());
+        // Every third pixel lies outside the view.
+        let aim = |p: PixelRequest| {
+            let (origin, direction, limit) = (DVec3::ZERO, DVec3::Z, FAR);
+            (p.x % 3 != 2).then_some(Request { origin, direction, limit, index: p.index, aim: Aim::Radiance })
+        };
+        let pixel = |a: &Answer| Pixel { colour: a.value, distance: 1.0 };
+        for count in [90u32, 9, 60, 0, 90] {
+            let pixels: Vec<_> = (0..count).map(|k| PixelRequest { x: k, y: 0, index: 7 * k }).collect();
+            let made = shots.trace(&pixels, &aim, &mut light, &pixel).unwrap();
+            assert_eq!(made.len(), pixels.len());
+            for (k, pixel) in made.iter().enumerate() {
+                let wanted = if k % 3 == 2 { (0.0, 0.0) } else { (7.0 * k as f32, 1.0) };
+                assert_eq!((pixel.colour.x, pixel.distance), wanted);
+            }
+        }
+    }
+}

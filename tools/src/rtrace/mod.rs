@@ -7,7 +7,7 @@ mod record;
 mod stream;
 mod tree;
 
-use crate::light::Scene;
+use crate::light::{self, Scene};
 use crate::session::{Session, Stop, Tool, on_deep_stack, split};
 use crate::spectral::Converter;
 use ambit_base::Notify;
@@ -15,7 +15,6 @@ use ambit_cli::{
     About, COMMON_FEATURES, Failure, Features, Field, OutputFormat, OutputSpec, RAY_FEATURES, RayOptions,
     StandardOutput, ray_table,
 };
-use ambit_render::OctreeSource;
 use input::{Patient, RayReader};
 use record::RecordWriter;
 use std::ffi::OsString;
@@ -59,10 +58,7 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     };
     let job = Job::new(&options, session)?;
     session.prepare(&options.common)?;
-    let source = match octree.strip_prefix('!') {
-        Some(command) => OctreeSource::Command(command.to_owned()),
-        None => OctreeSource::File(octree.clone()),
-    };
+    let source = light::octree(&octree)?;
     let mut scene = Scene::open(session, source, &options.rendering, !job.spec.shades(), options.common.output)?;
     // Not by way of Rust's own buffer, of which a poll knows nothing.
     let input = stdin().as_fd().try_clone_to_owned().map_err(|e| Failure::system("cannot read standard input", &e))?;

@@ -12,15 +12,15 @@ use ambit_scene::VOID;
 pub(crate) struct RecordWriter<'a> {
     fields: &'a [Field],
     conversion: &'a Converter,
+    /// Of shares of light (`W`).
+    shares: Converter,
     format: OutputFormat,
-    /// What light is multiplied by; shares of it (`W`) are not.
-    efficacy: f32,
 }
 
 impl<'a> RecordWriter<'a> {
     /// Records of these fields.
     pub(crate) fn new(fields: &'a [Field], conversion: &'a Converter, options: &RayOptions) -> Self {
-        Self { fields, conversion, format: options.format, efficacy: options.common.output.efficacy() }
+        Self { fields, conversion, shares: conversion.of_shares(options.common.output), format: options.format }
     }
 
     /// Appends the records of a batch, with its spectra if the calculation is by wavelength.
@@ -57,7 +57,7 @@ impl<'a> RecordWriter<'a> {
                 Field::Contribution => self.light(out, contribution, bins.map(|b| b.contribution)),
                 Field::Weight => self.number(out, f64::from(answer.weight)),
                 Field::Coefficient => {
-                    self.colour(out, answer.coefficient, bins.map(|b| b.coefficient), self.efficacy);
+                    self.colour(out, &self.shares, answer.coefficient, bins.map(|b| b.coefficient));
                 }
                 Field::Length => self.number(out, answer.length),
                 Field::FirstLength => self.number(out, answer.first_length),
@@ -108,13 +108,13 @@ impl<'a> RecordWriter<'a> {
 
     /// Light, or in a calculation by wavelength its `bins`.
     fn light(&self, out: &mut Vec<u8>, colour: Rgb, bins: Option<&[f32]>) {
-        self.colour(out, colour, bins, 1.0);
+        self.colour(out, self.conversion, colour, bins);
     }
 
-    /// A colour as it is written, over a divisor.
-    fn colour(&self, out: &mut Vec<u8>, colour: Rgb, bins: Option<&[f32]>, divisor: f32) {
+    /// A colour as it is written.
+    fn colour(&self, out: &mut Vec<u8>, conversion: &Converter, colour: Rgb, bins: Option<&[f32]>) {
         let mut made = Channels::default();
-        let count = match (self.conversion, bins) {
+        let count = match (conversion, bins) {
             (Converter::Spectral(conversion), Some(bins)) => conversion.apply(bins, &mut made).len(),
             (Converter::Rgb(conversion), _) => {
                 made[..3].copy_from_slice(&conversion.apply(colour).to_array());
@@ -122,13 +122,7 @@ impl<'a> RecordWriter<'a> {
             }
             (Converter::Spectral(_), None) => 0,
         };
-        let made = &mut made[..count];
-        if divisor != 1.0 {
-            for channel in &mut *made {
-                *channel /= divisor;
-            }
-        }
-        self.channels(out, made);
+        self.channels(out, &made[..count]);
     }
 
     fn channels(&self, out: &mut Vec<u8>, channels: &[f32]) {

@@ -172,20 +172,28 @@ mod tests {
     use std::cell::RefCell;
     use std::rc::Rc;
 
-    /// A light whose radiance is the ray's first coordinate; it notes the sizes of batches.
-    struct Plain(Rc<RefCell<Vec<String>>>);
+    /// A light whose radiance is the ray's first coordinate; it notes the sizes of batches, and insists on being given the
+    /// memory of the answers before.
+    struct Plain {
+        log: Rc<RefCell<Vec<String>>>,
+        /// Answers of the last batch, and the memory that they are in.
+        left: (usize, usize),
+    }
 
     impl Light for Plain {
         fn trace(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Stop> {
             if !requests.is_empty() {
-                self.0.borrow_mut().push(format!("trace {}", requests.len()));
+                self.log.borrow_mut().push(format!("trace {}", requests.len()));
             }
+            assert_eq!((answers.len(), answers.capacity()), self.left, "other memory than before");
             let answer = |r: &Request| {
                 let mut a = Answer::nothing(r.origin, r.direction.normalize());
                 a.value = Rgb::splat(r.origin.x as f32);
                 a
             };
-            *answers = requests.iter().map(answer).collect();
+            answers.clear();
+            answers.extend(requests.iter().map(answer));
+            self.left = (answers.len(), answers.capacity());
             Ok(())
         }
 
@@ -225,8 +233,8 @@ mod tests {
         let log = Rc::new(RefCell::new(Vec::new()));
         let mut out = Watched(Rc::clone(&log), Vec::new(), 0);
         let rays = RayReader::new(input.as_bytes(), InputFormat::Ascii);
-        let complete =
-            Stream::new(&options, &spec).run(rays, &records, None, &mut Plain(Rc::clone(&log)), &mut out).unwrap();
+        let mut light = Plain { log: Rc::clone(&log), left: (0, 0) };
+        let complete = Stream::new(&options, &spec).run(rays, &records, None, &mut light, &mut out).unwrap();
         let values = out.1.chunks_exact(4).map(|b| f32::from_ne_bytes(b.try_into().unwrap())).collect();
         let log = log.borrow().clone();
         (log, values, complete)

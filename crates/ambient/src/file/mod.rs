@@ -18,6 +18,7 @@ mod reuse;
 mod scan;
 mod segment;
 mod share;
+mod smoothing;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

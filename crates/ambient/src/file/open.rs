@@ -5,6 +5,7 @@ use super::reuse::{Opening, Reuse, Verdict};
 use super::scan::{Contents, FORMAT, scan_as};
 use super::segment::{has_segments, missing, remove_done, segments};
 use super::share::{AmbientFile, Locks, Spare, cut, io_error, lock, read_from, skipped};
+use super::smoothing::smoothing;
 use crate::codec::Layout;
 use crate::components::Components;
 use crate::conversion::{Conversion, DIGITS, SPLITS, Sampling};
@@ -262,7 +263,7 @@ impl Entry<'_> {
     /// Goes on with a file that was read as its fingerprint allows.
     fn taken(&self, found: Existing, file: Arc<File>) -> Opened {
         let Existing { contents, verdict, end, locked } = found;
-        let smoothing = Some(smoothing_of(&contents));
+        let smoothing = Some(smoothing(&contents.header));
         match verdict {
             Verdict::Leave(list) => self.left(&contents, &list),
             Verdict::Use(warning) => {
@@ -332,7 +333,7 @@ impl Entry<'_> {
                     let found = contents.records.len();
                     self.notify.warn(&format!("loaded {found} values from read-only ambient file"));
                 }
-                let smoothing = Some(smoothing_of(&contents));
+                let smoothing = Some(smoothing(&contents.header));
                 Ok(Opened { records: contents.records, file: None, smoothing })
             }
         }
@@ -421,11 +422,4 @@ impl AmbientFile {
         Entry { path: Path::new("a.amb"), name, opening, notify, beside: false, lockless: Cell::new(false) }
             .read_only(file)
     }
-}
-
-/// The smoothing of the run that began a file; that of Radiance, and of older versions, is none.
-fn smoothing_of(contents: &Contents) -> f32 {
-    let words = super::fingerprint_lines(&contents.header).flat_map(|line| line.split(u8::is_ascii_whitespace));
-    let told = words.filter_map(|word| std::str::from_utf8(word.strip_prefix(b"smoothing=")?).ok()?.parse().ok());
-    told.last().unwrap_or(1.0)
 }

@@ -3,11 +3,14 @@
 use super::segment::names;
 use super::tests::{Folder, Heard, batch, lines, plain};
 use super::*;
-use ambit_base::{Notify, Silent};
+use crate::components::Components;
+use crate::record::Record;
+use ambit_base::{Notify, Rgb, Silent};
 use ambit_file::{FileLock, LockMode};
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, ChildStdout, Command, Stdio};
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 const NAME: &str = "AMBIT_SEGMENT_TEST_FILE";
@@ -109,6 +112,68 @@ fn segments_of_other_scenes_are_not_merged() {
     assert_eq!(open(&folder, "host-1", &heard).records, batch(0, 2));
     assert!(heard.all().contains("of another scene, and not used"), "{}", heard.all());
     assert!(segment.exists());
+}
+
+/// Six bins, as one would open them whose sampling is the file's own.
+static SIX: LazyLock<Components> = LazyLock::new(|| Components::in_order(6));
+
+/// Records of six bins.
+fn spectra(from: u32, count: u32) -> Vec<Record> {
+    let further = |r: &Record| [Rgb::new(0.25, 0.5, 2.0) * r.corral as f32].into();
+    batch(from, count).into_iter().map(|r| Record { further: further(&r), ..r }.quantised(&SIX)).collect()
+}
+
+/// A run in red, green and blue goes on with a file of six bins: its segment is of six bins, too, and only a run in six
+/// bins merges it, as values that are converted to and fro are not what they were.
+#[test]
+fn segments_of_converted_files_are_of_the_file_s_own_bins() {
+    let header = lines();
+    let six = |folder: &Folder, notify: &dyn Notify| {
+        let opening = Opening { components: &SIX, ..impatient(&header, "host-6") };
+        AmbientFile::open(&folder.file(), &opening, notify).unwrap()
+    };
+    let folder = Folder::new();
+    let mut file = six(&folder, &Silent).file.unwrap();
+    file.append(&spectra(1, 4), &Silent).unwrap();
+    file.sync(&Silent).unwrap();
+    let before = fs::read(folder.file()).unwrap();
+    let opened = open(&folder, "host-1", &Silent);
+    let (first, mut file) = (opened.records, opened.file.unwrap());
+    assert!(first.len() == 4 && first.iter().all(|r| r.further.is_empty()));
+    let holder = Holder::of(&folder);
+    file.append(&batch(10, 3), &Silent).unwrap();
+    file.sync(&Silent).unwrap();
+    file.close();
+    drop(holder);
+    let [segment] = &names(&folder.file())[..] else { panic!("one segment") };
+    let bytes = fs::read(segment).unwrap();
+    let written = scan(&bytes, "segment").unwrap();
+    assert_eq!((written.header.components(), written.records.len()), (6, 3));
+    // Each of three bins covers two of six.
+    let [red, green, blue] = batch(10, 1)[0].value.to_array();
+    let bins: Vec<f32> = written.components.of(&written.records[0]).collect();
+    assert!(bins.iter().zip([red, red, green, green, blue, blue]).all(|(a, b)| (a - b).abs() <= b / 128.0), "{bins:?}");
+    // Runs of three bins use it, again and again, and leave it where it is.
+    let mut converted = Vec::new();
+    for owner in ["host-2", "host-3"] {
+        let heard = Heard::default();
+        converted = open(&folder, owner, &heard).records;
+        assert_eq!(heard.all().matches("different ambient file wavelength sampling").count(), 1, "{}", heard.all());
+        assert!(!heard.all().contains("segment") && segment.exists(), "{}", heard.all());
+        assert_eq!((converted.len(), &converted[..4]), (7, &first[..]));
+        assert_eq!(fs::read(folder.file()).unwrap(), before);
+    }
+    // The first of six bins merges it.
+    let heard = Heard::default();
+    assert_eq!(six(&folder, &heard).records, [spectra(1, 4), written.records].concat());
+    assert!(heard.all().contains("merged 3 values of 1 segment into"), "{}", heard.all());
+    assert!(names(&folder.file()).is_empty());
+    assert_eq!(fs::read(folder.file()).unwrap(), [&before[..], &bytes[written.start..]].concat());
+    assert_eq!(open(&folder, "host-4", &Silent).records, converted, "merging changes nothing");
+    assert_eq!(
+        converted[4..].iter().map(|r| r.position).collect::<Vec<_>>(),
+        batch(10, 3).iter().map(|r| r.position).collect::<Vec<_>>()
+    );
 }
 
 #[test]

@@ -39,7 +39,8 @@ fn observed(observe: bool, threads: usize) -> (Vec<Answer>, Option<Observed>, f6
             }
         }
         // How far bright records outweigh others where errors are told relative to the mean.
-        let brightness: Vec<f64> = cache.records().iter().map(|r| f64::from(r.value.brightness())).collect();
+        let deeper = cache.records().iter().filter(|r| r.level == 1);
+        let brightness: Vec<f64> = deeper.map(|r| f64::from(r.value.brightness())).collect();
         let mean = brightness.iter().sum::<f64>() / brightness.len() as f64;
         let square = brightness.iter().map(|b| b * b).sum::<f64>() / brightness.len() as f64;
         (answers, cache.observed(), square.sqrt() / mean)
@@ -58,8 +59,10 @@ fn counting_changes_nothing_and_does_not_depend_on_threads() {
     // At level 0 only the questions above were asked; the hemispheres asked at level 1.
     assert_eq!((counts.asked[0], counts.answered[0]), (one.len() as u64, answered));
     assert!(counts.asked[1] > 1000 && counts.answered[1] > 0 && counts.asked[2] == 0, "{counts:?}");
-    assert!(counts.compared > 20 && counts.error > 0.0 && counts.error < counts.difference, "{counts:?}");
+    let (compared, difference, error) = (counts.compared[1], counts.difference[1], counts.error[1]);
+    assert!(compared > 20 && error > 0.0 && error < difference, "{counts:?}");
+    assert!(counts.compared[0] > 0 && counts.compared[2..] == [0; 6], "{counts:?}");
     // A record of the fewest samples, 25 at level 1, errs by some 1/√25, and that is what those that answer together differ by:
     // extrapolation and the levels that they are of add little.
-    assert!(counts.difference < 1.1 / 5.0 * spread, "{counts:?} {spread}");
+    assert!(difference < 1.1 / 5.0 * spread, "{counts:?} {spread}");
 }

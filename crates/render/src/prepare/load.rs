@@ -2,12 +2,11 @@
 
 use crate::Error;
 use ambit_base::{Notify, Transform};
-use ambit_file::{Header, name_of, path_of};
-use ambit_octree::{Cube, Mesh};
+use ambit_file::{Header, name_of, os_text};
+use ambit_octree::{Cube, Mesh, Source};
 use ambit_scene::{Class, Kind, ObjectId, Scene, Shell};
 use std::collections::HashMap;
 use std::ops::Range;
-use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -35,22 +34,6 @@ impl std::fmt::Debug for Environment<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("Environment")
     }
-}
-
-/// Where an octree comes from.
-#[derive(Clone, Debug)]
-pub enum OctreeSource {
-    /// A file, by its name.
-    File(String),
-    /// A command that prints it, without the leading `!`.
-    Command(String),
-    /// Bytes at hand, such as standard input.
-    Bytes {
-        /// What errors call them.
-        name: String,
-        /// The octree.
-        bytes: Vec<u8>,
-    },
 }
 
 /// A scene with everything it refers to.
@@ -98,14 +81,11 @@ impl Volumes {
 }
 
 /// Loads an octree and what it refers to.
-pub fn load(source: OctreeSource, environment: &Environment<'_>) -> Result<Loaded, Error> {
-    let (name, bytes, failed) = fetch(source)?;
+pub fn load(source: Source, environment: &Environment<'_>) -> Result<Loaded, Error> {
     let mut scene = Scene::new();
-    let main = read(&bytes, &name, &mut scene, environment)?;
-    if failed {
-        environment.notify.warn(&format!("bad status from \"{name}\""));
-    }
-    drop(bytes);
+    let main = read(&source.bytes, &source.name, &mut scene, environment)?;
+    source.complain(environment.notify);
+    drop(source);
     let top_level = main.objects();
     let mut volumes = Volumes::default();
     let mut known = HashMap::new();
@@ -122,34 +102,6 @@ pub fn load(source: OctreeSource, environment: &Environment<'_>) -> Result<Loade
         next = end..scene.len() as ObjectId;
     }
     Ok(Loaded { scene, top_level, volumes, cube: main.cube, header: main.header })
-}
-
-/// Name and bytes of an octree, and whether the command that made it failed: whoever gets none needs not know.
-fn fetch(source: OctreeSource) -> Result<(String, Vec<u8>, bool), Error> {
-    match source {
-        OctreeSource::Bytes { name, bytes } => Ok((name, bytes, false)),
-        OctreeSource::File(name) => match std::fs::read(path_of(&name)) {
-            Ok(bytes) => Ok((name, bytes, false)),
-            Err(e) => Err(Error::system(format!("cannot open octree file \"{name}\": {}", reason(&e)))),
-        },
-        OctreeSource::Command(command) => {
-            let output = std::process::Command::new("/bin/sh")
-                .arg0("sh")
-                .arg("-c")
-                .arg(path_of(&command))
-                .stdin(std::process::Stdio::inherit())
-                .stderr(std::process::Stdio::inherit())
-                .output()
-                .map_err(|e| Error::system(format!("cannot execute \"!{command}\": {}", reason(&e))))?;
-            Ok((format!("!{command}"), output.stdout, !output.status.success()))
-        }
-    }
-}
-
-/// The system's words for an error, without Rust's number.
-fn reason(e: &std::io::Error) -> String {
-    let text = e.to_string();
-    text.split(" (os error").next().unwrap_or(&text).to_owned()
 }
 
 fn read(
@@ -179,9 +131,9 @@ fn place(
     let what = if kind == Kind::Mesh { "mesh" } else { "octree" };
     let path = (environment.find)(&name)
         .ok_or_else(|| Error::system(format!("cannot find {what} file \"{name}\": No such file or directory")))?;
-    let bytes = std::fs::read(&path)
-        .map_err(|e| Error::system(format!("cannot open {what} file \"{}\": {}", path.display(), reason(&e))))?;
     let shown = name_of(&path);
+    let bytes = std::fs::read(&path)
+        .map_err(|e| Error::system(format!("cannot open {what} file \"{shown}\": {}", os_text(&e))))?;
     let contents = if kind == Kind::Mesh {
         Contents::Mesh(Arc::new(ambit_octree::read_mesh(&bytes, &shown, scene, environment.notify)?))
     } else {

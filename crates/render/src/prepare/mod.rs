@@ -8,7 +8,7 @@ mod world;
 
 pub(crate) use fault::Fault;
 pub(crate) use load::Contents;
-pub use load::{Definition, Environment, Loaded, OctreeSource, load};
+pub use load::{Definition, Environment, Loaded, load};
 pub(crate) use material::compile_material;
 pub(crate) use modifiers::{Modifiers, Node};
 

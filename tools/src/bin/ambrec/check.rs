@@ -6,7 +6,7 @@
 
 use crate::store::{Failure, Output, PATIENCE, Told, bytes, file, tell};
 use ambit_ambient::{Components, Layout, Record, missing, remove_done, scan, segments};
-use ambit_file::{FileLock, LockMode, os_text};
+use ambit_file::{FileLock, LockMode, bytes_of, name_of, os_text};
 use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::fs::File;
@@ -84,7 +84,7 @@ fn is_written(again: &[u8], own: &[u8]) -> bool {
 pub(crate) fn print(files: &[PathBuf]) -> Result<bool, Failure> {
     let mut fine = true;
     for path in files {
-        let name = path.display().to_string();
+        let name = name_of(path).into_owned();
         let bytes = bytes(path)?;
         let (text, sound) = match scan(&bytes, &name) {
             Err(problem) => (problem, false),
@@ -109,15 +109,15 @@ pub(crate) fn print(files: &[PathBuf]) -> Result<bool, Failure> {
         };
         fine &= sound;
         let word = if sound { "sound" } else { "DAMAGED" };
-        crate::store::print(format!("{name}: {word}: {text}\n").as_bytes())?;
+        crate::store::print(&bytes_of(&format!("{name}: {word}: {text}\n")))?;
     }
     Ok(fine)
 }
 
 /// Keeps all that makes sense.
 pub(crate) fn repair(path: &Path, output: &Output) -> Result<(), Failure> {
-    let name = path.display().to_string();
-    let failed = |e: io::Error| Failure::Text(format!("cannot repair \"{name}\": {}", os_text(&e)));
+    let name = name_of(path).into_owned();
+    let failed = |e: io::Error| Failure(format!("cannot repair \"{name}\": {}", os_text(&e)));
     let in_place = output.output.is_none();
     let handle = Arc::new(File::options().read(true).write(in_place).open(path).map_err(failed)?);
     let mode = if in_place { LockMode::Exclusive } else { LockMode::Shared };

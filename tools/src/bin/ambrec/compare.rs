@@ -4,6 +4,7 @@ use crate::stats::Grid;
 use crate::store::{Failure, contents, print as write};
 use ambit_ambient::{Contents, Layout, Record, fingerprint_lines};
 use ambit_base::Colour;
+use ambit_file::{bytes_of, name_of, text_of};
 use std::collections::HashSet;
 use std::fmt::Write;
 use std::path::Path;
@@ -30,7 +31,7 @@ pub(crate) fn print(left: &Path, right: &Path) -> Result<bool, Failure> {
         .map(|l| ('<', l))
         .chain(theirs.iter().filter(|l| !ours.contains(l)).map(|l| ('>', l)))
     {
-        say(format!("{name} {}", String::from_utf8_lossy(line)));
+        say(format!("{name} {}", text_of(line)));
     }
     let set = |c: &Contents| -> HashSet<Vec<u8>> {
         c.records.iter().map(|r| Layout::CURRENT.encode(r, &c.components)).collect()
@@ -42,8 +43,8 @@ pub(crate) fn print(left: &Path, right: &Path) -> Result<bool, Failure> {
     };
     let (left_only, right_only) = (only(&a, &other), only(&b, &one));
     say(format!("{common} records in both"));
-    say(format!("{} only in {}", left_only.len(), left.display()));
-    say(format!("{} only in {}", right_only.len(), right.display()));
+    say(format!("{} only in {}", left_only.len(), name_of(left)));
+    say(format!("{} only in {}", right_only.len(), name_of(right)));
     let mut differences = near(&left_only, &right_only);
     if !differences.is_empty() {
         let n = differences.len() as f64;
@@ -60,7 +61,7 @@ pub(crate) fn print(left: &Path, right: &Path) -> Result<bool, Failure> {
             100.0 * median
         ));
     }
-    write(text.as_bytes())?;
+    write(&bytes_of(&text))?;
     Ok(same_marks && left_only.is_empty() && right_only.is_empty())
 }
 

@@ -3,6 +3,7 @@
 use crate::store::{Failure, Output, contents, file, tell};
 use ambit_ambient::{Components, Layout, Record, fingerprint_lines};
 use ambit_base::DVec3;
+use ambit_file::name_of;
 use clap::Args;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -17,12 +18,12 @@ pub(crate) fn merge(files: &[PathBuf], output: &Output, force: bool) -> Result<(
         let one = contents(path)?;
         let main = first.get_or_insert_with(|| (one.header.clone(), one.layout, one.components.clone()));
         if one.components != main.2 {
-            let (a, b) = (files[0].display(), path.display());
+            let (a, b) = (name_of(&files[0]), name_of(path));
             let (found, expected) = (one.components.count(), main.2.count());
             return Err(format!("\"{b}\" has NCOMP={found}, and \"{a}\" NCOMP={expected}").into());
         }
         if !force && !fingerprint_lines(&main.0).eq(fingerprint_lines(&one.header)) {
-            let (a, b) = (files[0].display(), path.display());
+            let (a, b) = (name_of(&files[0]), name_of(path));
             // Radiance's files have none.
             let unmarked =
                 [(&a, &main.0), (&b, &one.header)].into_iter().find(|(_, h)| fingerprint_lines(h).next().is_none());
@@ -49,7 +50,7 @@ pub(crate) fn convert(path: &Path, to: &str, output: &Output) -> Result<(), Fail
     if layout == Layout::V559 && all.components != Components::default() {
         return Err(format!(
             "\"{}\" is of a calculation by wavelength, which layout 559 has no room for",
-            path.display()
+            name_of(path)
         )
         .into());
     }

@@ -84,10 +84,8 @@ enum Task {
 fn main() -> ExitCode {
     match run(Arguments::parse().task) {
         Ok(fine) => ExitCode::from(u8::from(!fine)),
-        // A reader that has seen enough is no failure.
-        Err(store::Failure::Pipe) => ExitCode::SUCCESS,
-        Err(store::Failure::Text(text)) => {
-            let _ = writeln!(std::io::stderr(), "ambrec: {text}");
+        Err(store::Failure(text)) => {
+            store::tell(&text);
             ExitCode::from(2)
         }
     }
@@ -104,12 +102,15 @@ fn run(task: Task) -> Result<bool, store::Failure> {
         Task::Repair { file, output } => check::repair(&file, &output).map(|()| true),
         Task::Convert { file, to, output } => edit::convert(&file, &to, &output).map(|()| true),
         Task::Export(export) => export.run().map(|()| true),
-        Task::Man => manual().map(|()| true),
+        Task::Man => {
+            manual();
+            Ok(true)
+        }
     }
 }
 
 /// The manual page: the program's, and a section for every command.
-fn manual() -> Result<(), store::Failure> {
+fn manual() {
     let command = Arguments::command();
     let mut page = Vec::new();
     let man = clap_mangen::Man::new(command.clone());
@@ -128,5 +129,5 @@ fn manual() -> Result<(), store::Failure> {
         let _ = man.render_synopsis_section(&mut page);
         let _ = man.render_options_section(&mut page);
     }
-    store::print(&page)
+    ambit_cli::answer(&page);
 }

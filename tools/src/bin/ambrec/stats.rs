@@ -3,6 +3,7 @@
 use crate::store::{Failure, Told, contents, print as write};
 use ambit_ambient::{Contents, Layout, Record, fingerprint_lines, segments};
 use ambit_base::{Colour, DVec3};
+use ambit_file::{bytes_of, text_of};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 use std::path::Path;
@@ -140,7 +141,7 @@ pub(crate) fn print(path: &Path, json: bool) -> Result<(), Failure> {
         high: contents.records.iter().fold(DVec3::NEG_INFINITY, |b, r| b.max(r.position)),
     };
     let text = if json { summary.json(&levels) } else { summary.text(&levels) };
-    write(text.as_bytes())
+    write(&bytes_of(&text))
 }
 
 struct Summary<'a> {
@@ -160,7 +161,7 @@ impl Summary<'_> {
             let _ = writeln!(text, "{name:<10} {value}");
         };
         for line in c.header.lines().skip(1).take(1).chain(fingerprint_lines(&c.header)) {
-            say("header", String::from_utf8_lossy(line).into_owned());
+            say("header", text_of(line).into_owned());
         }
         say("layout", format!("{}, {} channels", c.layout.magic(), c.header.components()));
         say("records", format!("{}", c.records.len()));

@@ -1,7 +1,7 @@
 //! Ambient files in and out.
 
 use ambit_ambient::{Components, Contents, FORMAT, Layout, Record, missing, scan, segments};
-use ambit_file::{FileLock, Header, LockMode, Replacement, os_text};
+use ambit_file::{FileLock, Header, LockMode, Replacement, bytes_of, name_of, os_text};
 use clap::Args;
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -12,18 +12,13 @@ use std::time::Duration;
 /// How long the lock of a file is waited for.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Why the work ends early.
+/// Why the work ends early: what to tell the user.
 #[derive(Debug)]
-pub(crate) enum Failure {
-    /// What to tell the user.
-    Text(String),
-    /// Nobody reads the output any more.
-    Pipe,
-}
+pub(crate) struct Failure(pub(crate) String);
 
 impl From<String> for Failure {
     fn from(text: String) -> Self {
-        Self::Text(text)
+        Self(text)
     }
 }
 
@@ -39,7 +34,7 @@ impl Output {
     /// Writes all at once.
     pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         let Some(path) = &self.output else { return print(bytes) };
-        let failed = |e: io::Error| Failure::Text(format!("cannot write \"{}\": {}", path.display(), os_text(&e)));
+        let failed = |e: io::Error| Failure(format!("cannot write \"{}\": {}", name_of(path), os_text(&e)));
         let mut out = Replacement::create(path).map_err(failed)?;
         out.write_all(bytes).map_err(failed)?;
         out.commit().map_err(failed)
@@ -48,19 +43,16 @@ impl Output {
 
 /// Prints on standard output.
 pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
-    let mut out = ambit_cli::StandardOutput::new();
-    out.write_all(bytes).and_then(|()| out.flush()).map_err(|e| match e.kind() {
-        io::ErrorKind::BrokenPipe => Failure::Pipe,
-        _ => Failure::Text(format!("cannot write output: {}", os_text(&e))),
-    })
+    let written = ambit_cli::StandardOutput::ending().write_all(bytes);
+    written.map_err(|e| Failure(format!("cannot write output: {}", os_text(&e))))
 }
 
 /// The bytes of a file, read under its lock if that can be had.
 pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
-    let failed = |e: io::Error| Failure::Text(format!("cannot read \"{}\": {}", path.display(), os_text(&e)));
+    let failed = |e: io::Error| Failure(format!("cannot read \"{}\": {}", name_of(path), os_text(&e)));
     let file = Arc::new(File::open(path).map_err(failed)?);
     if !file.metadata().map_err(failed)?.is_file() {
-        return Err(Failure::Text(format!("\"{}\" is not a regular file", path.display())));
+        return Err(Failure(format!("\"{}\" is not a regular file", name_of(path))));
     }
     let _lock = FileLock::acquire_within(&file, LockMode::Shared, PATIENCE);
     let mut bytes = Vec::new();
@@ -70,9 +62,9 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
 
 /// The contents of a file, with the records that wait in segments beside it.
 pub(crate) fn contents(path: &Path) -> Result<Contents, Failure> {
-    let name = path.display().to_string();
+    let name = name_of(path).into_owned();
     let mut contents = scan(&bytes(path)?, &name)
-        .map_err(|problem| Failure::Text(format!("bad/incompatible ambient file \"{name}\": {problem}")))?;
+        .map_err(|problem| Failure(format!("bad/incompatible ambient file \"{name}\": {problem}")))?;
     let (more, _) = missing(&contents, &segments(path, &contents, &Told));
     contents.records.extend(more);
     Ok(contents)
@@ -100,7 +92,7 @@ pub(crate) fn file(header: &Header, layout: Layout, components: &Components, rec
 
 /// Tells something on standard error.
 pub(crate) fn tell(text: &str) {
-    let _ = writeln!(io::stderr(), "ambrec: {text}");
+    let _ = io::stderr().write_all(&bytes_of(&format!("ambrec: {text}\n")));
 }
 
 /// Warnings of the library.
