@@ -120,6 +120,21 @@ pub(crate) fn split(mut arguments: impl Iterator<Item = OsString>) -> (String, V
     (program, arguments.map(text).collect())
 }
 
+/// The variable that [`processors`] asks.
+const THREADS: &str = "AMBIT_THREADS";
+
+/// How many threads to use unless `-n` says so: one a processor, or what the environment says. Packages that start a
+/// program on each processor give none of them `-n`, and would have as many threads as the square of their number.
+pub(crate) fn processors() -> Result<usize, Failure> {
+    let Some(value) = variable(THREADS).filter(|value| !value.is_empty()) else {
+        return Ok(std::thread::available_parallelism().map_or(1, std::num::NonZero::get));
+    };
+    match value.parse() {
+        Ok(threads) if threads > 0 => Ok(threads),
+        _ => Err(Failure::user(format!("bad {THREADS} '{value}' (expected a whole number above 0)"))),
+    }
+}
+
 /// Bytes of stack of every thread that follows rays: enough for as many reflections as a ray may have, one waiting for the
 /// next. Only what is used takes memory.
 const STACK: usize = 128 << 20;

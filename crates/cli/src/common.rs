@@ -18,9 +18,9 @@ pub struct Common {
     pub warnings: bool,
     /// `-e FILE`: where messages go instead of standard error.
     pub error_file: Option<String>,
-    /// `-n`: threads; 0 for as many as there are processors.
+    /// `-n`: threads; 0 for as many as [`Common::processors`].
     pub threads: usize,
-    /// Processors that there are.
+    /// Threads unless `-n` says otherwise: processors that there are, if the user wants no fewer.
     pub processors: usize,
     /// `-P`, `-PP`: a persist file.
     pub persist: Option<String>,
@@ -183,7 +183,7 @@ pub(crate) fn thread_row<S: Carries<Common>>() -> Row<S> {
             s.part().threads = n as usize;
             Ok(())
         }),
-        "use this many threads (default: one a processor); results do not depend on it",
+        "use this many threads (default: what AMBIT_THREADS says, or one a processor); results do not depend on it",
     )
     .values("THREADS")
 }

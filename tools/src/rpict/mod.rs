@@ -11,7 +11,7 @@ mod watch;
 
 use crate::colour::Conversion;
 use crate::light::{Scene, octree};
-use crate::session::{Session, Stop, Tool, on_deep_stack, split};
+use crate::session::{Session, Stop, Tool, on_deep_stack, processors, split};
 use ambit_base::Notify;
 use ambit_cli::{About, COMMON_FEATURES, Failure, Features, Output, PICTURE_FEATURES, PictureOptions, picture_table};
 use ambit_file::PixelSpace;
@@ -54,8 +54,7 @@ fn work(program: String, words: Vec<String>) -> ExitCode {
 
 fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     let tool = Tool { about: ABOUT, features: Features(&[COMMON_FEATURES, PICTURE_FEATURES]), table: picture_table() };
-    let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let mut options = PictureOptions::new(processors);
+    let mut options = PictureOptions::new(processors()?);
     if !session.read(words, &tool, &mut options)? {
         return Ok(());
     }

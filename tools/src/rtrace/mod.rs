@@ -8,7 +8,7 @@ mod stream;
 mod tree;
 
 use crate::light::{self, Scene};
-use crate::session::{Session, Stop, Tool, on_deep_stack, split};
+use crate::session::{Session, Stop, Tool, on_deep_stack, processors, split};
 use crate::spectral::Converter;
 use ambit_base::Notify;
 use ambit_cli::{
@@ -46,8 +46,7 @@ fn work(program: String, words: Vec<String>) -> ExitCode {
 
 fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     let tool = Tool { about: ABOUT, features: Features(&[COMMON_FEATURES, RAY_FEATURES]), table: ray_table() };
-    let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let mut options = RayOptions::new(processors);
+    let mut options = RayOptions::new(processors()?);
     if !session.read(words, &tool, &mut options)? {
         return Ok(());
     }

@@ -1,0 +1,38 @@
+//! How many threads the rendering programs use: what `-n` says, or `AMBIT_THREADS`, or the processors that there are.
+
+use std::process::{Command, Output};
+
+const PROGRAMS: [&str; 2] = [env!("CARGO_BIN_EXE_rtrace"), env!("CARGO_BIN_EXE_rpict")];
+
+fn run(program: &str, threads: &str, line: &[&str]) -> Output {
+    Command::new(program).env("AMBIT_THREADS", threads).args(line).output().expect("the program runs")
+}
+
+/// The threads that `-defaults` of rtrace tells.
+fn told(threads: &str, line: &[&str]) -> String {
+    let text = String::from_utf8(run(PROGRAMS[0], threads, line).stdout).expect("text");
+    let told = text.lines().find_map(|l| l.strip_prefix("-n ")).expect("threads are told");
+    told.split_whitespace().next().expect("a number").to_owned()
+}
+
+#[test]
+fn the_environment_says_how_many_unless_the_command_line_does() {
+    assert_eq!(told("3", &["-defaults"]), "3");
+    assert_eq!(told("3", &["-n", "5", "-defaults"]), "5");
+    let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get).to_string();
+    assert_eq!(told("", &["-defaults"]), processors);
+}
+
+#[test]
+fn what_is_no_number_of_threads_is_refused() {
+    for program in PROGRAMS {
+        for threads in ["0", "-1", "two", "1.5"] {
+            let answer = run(program, threads, &["-defaults"]);
+            let text = String::from_utf8_lossy(&answer.stderr).into_owned();
+            assert_eq!(answer.status.code(), Some(1), "{program} {threads}: {text}");
+            assert!(text.contains("bad AMBIT_THREADS"), "{text}");
+            assert!(answer.stdout.is_empty());
+        }
+        assert!(run(program, "1", &["-defaults"]).status.success());
+    }
+}
