@@ -39,7 +39,8 @@ pub(crate) fn lines(report: &Report, seconds: f64) -> Vec<String> {
             100.0 * report.filling.as_secs_f64() / seconds.max(1e-9)
         ),
         if let Some(deepest) = o.compared.iter().rposition(|&n| n > 0) {
-            let percent = |all: &[f64]| all.iter().map(|x| format!("{:.2}", 100.0 * x)).collect::<Vec<_>>().join(" ");
+            let told = |(x, &n): (&f64, &u64)| if n > 0 { format!("{:.2}", 100.0 * x) } else { "-".to_owned() };
+            let percent = |all: &[f64]| all.iter().zip(&o.compared).map(told).collect::<Vec<_>>().join(" ");
             let (error, difference) = (percent(&o.error[..=deepest]), percent(&o.difference[..=deepest]));
             let of = counted("look-ups", &o.compared[..=deepest]);
             format!(

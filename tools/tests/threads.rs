@@ -24,14 +24,18 @@ fn the_environment_says_how_many_unless_the_command_line_does() {
 }
 
 #[test]
-fn what_is_no_number_of_threads_is_refused() {
+fn what_is_no_number_of_threads_is_refused_where_it_is_asked_for() {
     for program in PROGRAMS {
         for threads in ["0", "-1", "two", "1.5"] {
-            let answer = run(program, threads, &["-defaults"]);
+            let answer = run(program, threads, &["missing.oct"]);
             let text = String::from_utf8_lossy(&answer.stderr).into_owned();
             assert_eq!(answer.status.code(), Some(1), "{program} {threads}: {text}");
             assert!(text.contains("bad AMBIT_THREADS"), "{text}");
             assert!(answer.stdout.is_empty());
+            let answer = run(program, threads, &["-n", "5", "missing.oct"]);
+            let text = String::from_utf8_lossy(&answer.stderr).into_owned();
+            assert!(text.contains("missing.oct") && !text.contains("AMBIT_THREADS"), "{text}");
+            assert!(run(program, threads, &["-version"]).status.success());
         }
         assert!(run(program, "1", &["-defaults"]).status.success());
     }

@@ -3,12 +3,12 @@
 //! (Ward & Heckbert 1992, *Irradiance Gradients*).
 //!
 //! Means of extrapolations are too bright where irradiance is hollow from below, as on every ceiling: tangents lie above.
-//! Let records of values `Eᵢ` and gradients `gᵢ` at offsets `dᵢ` from the query have weights `wᵢ` that add up to 1, and let
-//! the field be quadratic, with Hessian `H`. The mean of `Eᵢ + gᵢ·dᵢ` errs by `−½ Σwᵢ dᵢᵀHdᵢ`. The mean of `Eᵢ` alone, moved
+//! Let records of values `Eᵢ` and gradients `gᵢ`, at offsets `dᵢ` from them to the query, have weights `wᵢ` that add up to
+//! 1, and let the field be quadratic, with Hessian `H`. The mean of `Eᵢ + gᵢ·dᵢ` errs by `−½ Σwᵢ dᵢᵀHdᵢ`. The mean of `Eᵢ` alone, moved
 //! by the mean gradient over the mean offset `D`, errs by `+½ Σwᵢ dᵢᵀHdᵢ − DᵀHD`. The mean of both therefore errs by
 //! `−½ DᵀHD`: nothing where records lie evenly around, and what extrapolation does where there is but one. Linear functions
 //! are met exactly, and of the gradients' noise half is averaged. That is interpolation of second order here; it needs no
-//! record's Hessian.
+//! record's Hessian. Gradients being relative and the same for all colours, the move is one factor, of grey.
 
 use crate::entry::Entry;
 use crate::light::Light;
@@ -195,9 +195,14 @@ pub(crate) fn accumulate<S: Sampler>(
     sum.light += match asked.interpolation {
         Interpolation::First => light * (factor.min(MAX_FACTOR) * smooth),
         Interpolation::Second => {
-            let turned = turned.clamp(MIN_FACTOR, MAX_FACTOR);
-            let tamed = if factor > MAX_FACTOR { (MAX_FACTOR - turned) / (factor - turned) } else { 1.0 };
-            let half = 0.5 * (factor.min(MAX_FACTOR) + turned) * smooth;
+            // What the gradient may add once either end is within its limits.
+            let (start, end) = (turned.clamp(MIN_FACTOR, MAX_FACTOR), factor.min(MAX_FACTOR));
+            let tamed = match (start == turned && end == factor, start == end) {
+                (true, _) => 1.0,
+                (_, true) => 0.0,
+                _ => (end - start) / (factor - turned),
+            };
+            let half = 0.5 * (start + end) * smooth;
             let value = light.value.mean();
             sum.moved.value += value * half;
             sum.moved.gradient += (u * gu + v * gv) * (tamed * value * smooth);

@@ -4,9 +4,10 @@
 //! one whether to cache. Counts are integers, one set a thread, so that their sums do not depend on threads. Of one
 //! look-up in 64, chosen by its place, the records that answer together are compared: with weights ωᵢ and answers vᵢ
 //! around their mean v, `s² = Σ ωᵢ (vᵢ − v)² / Σ ωᵢ` says how far they differ, and `s √Σωᵢ² / Σωᵢ` how uncertain their mean
-//! is if they err independently: the estimated error of interpolation, from noise and extrapolation alike. Both are told
-//! by the level of the question, relative to the mean of the level's records so far, as errors of pictures are: relative to
-//! v, dark corners would be all.
+//! is if they err independently: the estimated error of interpolation, from noise and extrapolation alike. Answers are
+//! extrapolations, of the first order: what the second makes good of their bend is counted still. Both are told by the level
+//! of the question, relative to the mean of the level's records so far, as errors of pictures are: relative to v, dark
+//! corners would be all.
 
 use crate::cache::Cache;
 use crate::sampler::{Answer, Query, Sampler};

@@ -96,7 +96,7 @@ pub(crate) fn transmittance(extinction: Rgb, distance: f64) -> Rgb {
 
 /// Reflections after which a ray ends whatever `-lr` says. A ray waits on the stack for those that follow from it, some 4 kB
 /// each, and between perfect mirrors there is no end; mirrors that keep .999 have lost all but e^-10 by then.
-const MOST_REFLECTIONS: i32 = 10_000;
+pub(crate) const MOST_REFLECTIONS: i32 = 10_000;
 
 /// A ray, and after evaluation what it met and what it is worth.
 #[derive(Clone, Copy, Debug)]

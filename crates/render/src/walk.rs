@@ -30,6 +30,8 @@ impl<O: Observer> Walk<'_, O> {
         self.work.rays += 1;
         if self.work.nested >= MOST_NESTED {
             self.fail(Error::user(format!("more than {MOST_NESTED} rays that wait for each other are not supported")));
+            // Of those that wait none goes on; without this each would follow its other rays as deep again.
+            self.work.nested = u32::MAX / 2;
             return;
         }
         self.work.nested += 1;
@@ -125,5 +127,6 @@ impl<O: Observer> Walk<'_, O> {
 /// Rays that wait for each other, each on the stack: all the reflections that a ray may have, and what it crosses between
 /// them. Programs give each 11 KiB; the most that was measured is 4 (white plastic in a tree of endless paths).
 const MOST_NESTED: u32 = 12_000;
+const _: () = assert!(MOST_NESTED > crate::ray::MOST_REFLECTIONS as u32);
 /// Tag of pass-through rays.
 const PASS: u64 = 1;

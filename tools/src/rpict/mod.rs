@@ -54,9 +54,13 @@ fn work(program: String, words: Vec<String>) -> ExitCode {
 
 fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     let tool = Tool { about: ABOUT, features: Features(&[COMMON_FEATURES, PICTURE_FEATURES]), table: picture_table() };
-    let mut options = PictureOptions::new(processors()?);
+    let processors = processors();
+    let mut options = PictureOptions::new(processors.as_ref().map_or(1, |&n| n));
     if !session.read(words, &tool, &mut options)? {
         return Ok(());
+    }
+    if options.common.threads == 0 {
+        processors?;
     }
     options.rendering.check()?;
     let spectrum = &options.rendering.options.spectrum;

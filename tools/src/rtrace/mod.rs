@@ -46,9 +46,13 @@ fn work(program: String, words: Vec<String>) -> ExitCode {
 
 fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     let tool = Tool { about: ABOUT, features: Features(&[COMMON_FEATURES, RAY_FEATURES]), table: ray_table() };
-    let mut options = RayOptions::new(processors()?);
+    let processors = processors();
+    let mut options = RayOptions::new(processors.as_ref().map_or(1, |&n| n));
     if !session.read(words, &tool, &mut options)? {
         return Ok(());
+    }
+    if options.common.threads == 0 {
+        processors?;
     }
     options.rendering.check()?;
     let Some(octree) = session.octree.clone() else {
