@@ -1,5 +1,7 @@
-//! Where extra samples go: to cells that differ from their neighbours, relative to their sum, blurred so that a lone
-//! bright cell shares its samples with those around it.
+//! Where extra samples go: to cells between neighbours that differ, relative to their sum.
+//!
+//! What a cell's own sample found has no say in it. A cell's mean is that of all its samples, the first included: if bright
+//! first samples brought further ones and dark ones did not, means would be too dark.
 
 /// Sides of the grid below which there are no extra samples.
 const MIN_SIDE: usize = 8;
@@ -15,7 +17,7 @@ pub(crate) fn budget(super_samples: i32, weight: f32, n: usize) -> usize {
 /// The number of extra samples of each cell of a grid of `size` rows and columns; `brightness` row by row, `chance` a random
 /// number a cell. The last column of rings does not know the first: cells on a border make up for missing neighbours.
 pub(crate) fn allocate(size: [usize; 2], brightness: &[f32], budget: usize, chance: impl Fn(usize) -> f64) -> Vec<u32> {
-    let mut error = blurred(size, &differences(size, brightness));
+    let mut error = differences(size, brightness);
     // Left to go: summed from the end so that the last share takes what remains.
     let mut left = vec![0.0; error.len() + 1];
     for i in (0..error.len()).rev() {
@@ -36,62 +38,37 @@ pub(crate) fn allocate(size: [usize; 2], brightness: &[f32], budget: usize, chan
     counts
 }
 
-/// The difference measure: (b − b′)²/(b + b′) over pairs left–right, up–down and along one diagonal, added to both;
-/// cells on the border have fewer neighbours and count 6/5, corners 6/3.
+/// The difference measure of each cell: the mean of (b − b′)²/(b + b′) over pairs of neighbours on opposite sides of it,
+/// across, along and on both diagonals, as far as there are; in a corner, over the two that are beside it.
 fn differences([rows, n]: [usize; 2], brightness: &[f32]) -> Vec<f64> {
-    let mut error = vec![0.0; rows * n];
-    let mut pair = |a: usize, b: usize| {
-        let (x, y) = (f64::from(brightness[a]), f64::from(brightness[b]));
-        if x + y > 0.0 {
-            let e = (x - y) * (x - y) / (x + y);
-            error[a] += e;
-            error[b] += e;
-        }
-    };
+    let at = |i: usize, j: usize| f64::from(brightness[i * n + j]);
+    let pair = |x: f64, y: f64| if x + y > 0.0 { (x - y) * (x - y) / (x + y) } else { 0.0 };
+    let mut error = Vec::with_capacity(rows * n);
     for i in 0..rows {
         for j in 0..n {
-            let cell = i * n + j;
-            if j > 0 {
-                pair(cell, cell - 1);
+            let (inner_row, inner_column) = (i > 0 && i + 1 < rows, j > 0 && j + 1 < n);
+            let (mut sum, mut pairs) = (0.0, 0.0);
+            if inner_row {
+                sum += pair(at(i - 1, j), at(i + 1, j));
+                pairs += 1.0;
             }
-            if i > 0 {
-                pair(cell, cell - n);
+            if inner_column {
+                sum += pair(at(i, j - 1), at(i, j + 1));
+                pairs += 1.0;
             }
-            if i > 0 && j > 0 {
-                pair(cell, cell - n - 1);
+            if inner_row && inner_column {
+                sum += pair(at(i - 1, j - 1), at(i + 1, j + 1)) + pair(at(i - 1, j + 1), at(i + 1, j - 1));
+                pairs += 2.0;
             }
-        }
-    }
-    let outer = |k: usize, of: usize| k == 0 || k == of - 1;
-    for i in 0..rows {
-        for j in 0..n {
-            error[i * n + j] *= match (outer(i, rows), outer(j, n)) {
-                (true, true) => 6.0 / 3.0,
-                (true, false) | (false, true) => 6.0 / 5.0,
-                (false, false) => 1.0,
-            };
+            if pairs == 0.0 {
+                let (beside, above) = (if j == 0 { 1 } else { n - 2 }, if i == 0 { 1 } else { rows - 2 });
+                sum += pair(at(i, beside), at(above, j));
+                pairs = 1.0;
+            }
+            error.push(sum / pairs);
         }
     }
     error
-}
-
-/// Half a cell's own and an eighth of each of the four neighbours'.
-fn blurred([rows, n]: [usize; 2], error: &[f64]) -> Vec<f64> {
-    let at = |i: Option<usize>, j: Option<usize>| match (i, j) {
-        (Some(i), Some(j)) if i < rows && j < n => error[i * n + j],
-        _ => 0.0,
-    };
-    let mut out = Vec::with_capacity(rows * n);
-    for i in 0..rows {
-        for j in 0..n {
-            let around = at(i.checked_sub(1), Some(j))
-                + at(Some(i + 1), Some(j))
-                + at(Some(i), j.checked_sub(1))
-                + at(Some(i), Some(j + 1));
-            out.push(0.5 * error[i * n + j] + 0.125 * around);
-        }
-    }
-    out
 }
 
 #[cfg(test)]
@@ -111,6 +88,18 @@ mod tests {
     fn uniform_hemispheres_need_no_extra_samples() {
         assert!(allocate([8, 8], &[3.0; 64], 64, |_| 0.5).iter().all(|&c| c == 0));
         assert!(allocate([8, 8], &[0.0; 64], 64, |_| 0.5).iter().all(|&c| c == 0));
+    }
+
+    #[test]
+    fn what_a_cell_found_has_no_say_in_its_own_share() {
+        let random = |c: usize| (c as f64 * 0.754_877_666).fract();
+        let brightness: Vec<f32> = (0..64).map(|c| random(c) as f32).collect();
+        for c in 0..64 {
+            let other: Vec<f32> = (0..64).map(|k| if k == c { 50.0 } else { brightness[k] }).collect();
+            let (before, after) = (differences([8, 8], &brightness), differences([8, 8], &other));
+            assert_eq!(before[c], after[c], "cell {c}");
+            assert!((0..64).any(|k| after[k] > before[k] + 1.0), "its neighbours are looked at");
+        }
     }
 
     #[test]
