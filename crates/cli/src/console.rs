@@ -6,7 +6,12 @@ use ambit_file::{bytes_of, path_of};
 use std::fs::OpenOptions;
 use std::io::{self, Write};
 
-/// Prints `PROGRAM: CLASS - TEXT` on standard error; a closed standard error is no reason to stop.
+/// Prints a line on standard error, names as the bytes they are; a closed standard error is no reason to stop.
+pub fn say(line: impl std::fmt::Display) {
+    let _ = io::stderr().write_all(&bytes_of(&format!("{line}\n")));
+}
+
+/// Prints `PROGRAM: CLASS - TEXT` on standard error.
 #[derive(Clone, Debug)]
 pub struct ConsoleMessages {
     /// Base name of the running program.
@@ -18,8 +23,7 @@ pub struct ConsoleMessages {
 impl ConsoleMessages {
     /// Prints one message.
     pub fn print(&self, text: impl std::fmt::Display) {
-        let line = format!("{}: {text}\n", self.program);
-        let _ = io::stderr().write_all(&bytes_of(&line));
+        say(format_args!("{}: {text}", self.program));
     }
 
     /// Prints why the program stops.

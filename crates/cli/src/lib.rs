@@ -28,7 +28,7 @@ mod table;
 mod viewing;
 
 pub use common::{Carries, Common, Output, SCOTOPIC_EFFICACY};
-pub use console::{ConsoleMessages, attach_error_file};
+pub use console::{ConsoleMessages, attach_error_file, say};
 pub use defaults::defaults;
 pub use failure::{Class, Failure};
 pub use features::{COMMON_FEATURES, Features, PICTURE_FEATURES, RAY_FEATURES};

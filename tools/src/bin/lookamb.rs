@@ -2,8 +2,8 @@
 
 use ambit_ambient::{Components, FORMAT, Layout, Record, TextForm, scan_header};
 use ambit_base::{DVec3, Rgb};
-use ambit_cli::{StandardOutput, VERSION, answer};
-use ambit_file::{Header, bytes_of, command_line, word_of};
+use ambit_cli::{StandardOutput, VERSION, answer, say};
+use ambit_file::{Header, command_line, word_of};
 use ambit_render::Spectrum;
 use std::env::args_os;
 use std::ffi::OsString;
@@ -39,7 +39,7 @@ struct Options {
 fn main() -> ExitCode {
     match run(&args_os().collect::<Vec<_>>()) {
         Err(failure) => {
-            tell(&failure);
+            say(failure);
             ExitCode::FAILURE
         }
         Ok(()) => ExitCode::SUCCESS,
@@ -110,11 +110,6 @@ fn run(words: &[OsString]) -> Result<(), Failure> {
         to_text(&bytes, &name, options, &mut out)?;
     }
     out.flush().map_err(Failure::Output)
-}
-
-/// Says something on standard error.
-fn tell(text: &impl std::fmt::Display) {
-    let _ = io::stderr().write_all(&bytes_of(&format!("{text}\n")));
 }
 
 /// The lines of a header that text and binary share.
@@ -188,7 +183,7 @@ fn to_binary(bytes: &[u8], name: &str, options: Options, line: &[u8], out: &mut 
             }
             Err(problem) => {
                 // Radiance stops here without a word.
-                tell(&format_args!("lookamb: warning - stopped at {problem}"));
+                say(format_args!("lookamb: warning - stopped at {problem}"));
                 break;
             }
         }

@@ -9,7 +9,7 @@ mod process;
 mod reference;
 
 use ambit_cli::{StandardOutput, VERSION};
-use ambit_file::{Replacement, bytes_of, name_of, word_of};
+use ambit_file::{Replacement, name_of, word_of};
 use ambit_measure::{
     Entry, Error, Ladder, Plan, PlotSize, Program as Named, ReferenceInfo, Report, Side, measure, page, png, svg,
     table, to_csv, to_json,
@@ -56,7 +56,7 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> ExitCode {
 
 /// Says something on standard error.
 fn tell(text: &str) {
-    let _ = std::io::stderr().write_all(&bytes_of(&format!("raderr: {text}\n")));
+    ambit_cli::say(format_args!("raderr: {text}"));
 }
 
 /// Prints the manual page.

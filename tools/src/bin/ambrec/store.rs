@@ -1,7 +1,7 @@
 //! Ambient files in and out.
 
 use ambit_ambient::{Components, Contents, FORMAT, Layout, Record, missing, scan, segments};
-use ambit_file::{FileLock, Header, LockMode, Replacement, bytes_of, name_of, os_text};
+use ambit_file::{FileLock, Header, LockMode, Replacement, name_of, os_text};
 use clap::Args;
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -92,7 +92,7 @@ pub(crate) fn file(header: &Header, layout: Layout, components: &Components, rec
 
 /// Tells something on standard error.
 pub(crate) fn tell(text: &str) {
-    let _ = io::stderr().write_all(&bytes_of(&format!("ambrec: {text}\n")));
+    ambit_cli::say(format_args!("ambrec: {text}"));
 }
 
 /// Warnings of the library.
