@@ -2,7 +2,7 @@
 
 use ambit_cli::{
     About, Common, ConsoleMessages, Failure, Features, Outside, Process, Progress, Row, Scan, Signals, VERSION, answer,
-    attach_error_file, completions, defaults, long_help, man_page, scan,
+    attach_error_file, completions, defaults, long_help, man_page, say, scan,
 };
 use ambit_file::{
     Library, SearchPath, Zone, base_name, bytes_of, capture_lines, command_line, text_of, variable, word_of,
@@ -147,7 +147,7 @@ pub(crate) fn on_deep_stack(program: impl FnOnce() -> ExitCode + Send + 'static)
         // The thread has said why it panicked.
         Ok(Err(_)) => ExitCode::from(3),
         Err(e) => {
-            eprintln!("system - cannot start a thread: {e}");
+            say(format_args!("system - cannot start a thread: {e}"));
             ExitCode::from(2)
         }
     }

@@ -22,7 +22,8 @@ pub(crate) const MIN_FACTOR: f32 = 0.05;
 pub(crate) const MAX_FACTOR: f32 = 20.0;
 /// Relative rounding of positions in ambient files (31-bit mantissas), allowed for in the tests across the plane.
 const ROUNDING: f64 = 1e-9;
-/// Largest factor by which the mean gradient moves what records extrapolate half the way: what one record comes to.
+/// Limits of the factor by which the mean gradient moves what records extrapolate half the way: what one record comes to.
+const MIN_MOVE: f32 = 2.0 * MIN_FACTOR / (MIN_FACTOR + MAX_FACTOR);
 const MAX_MOVE: f32 = 2.0;
 /// Queries this near to a corralled record, as a fraction of its reach, need no probe: the azimuth of so short a vector
 /// means nothing, and probing would reject a record at its own place.
@@ -106,7 +107,7 @@ impl Moved {
     /// How much more the sum comes to once the mean gradient has moved it by half the mean offset.
     fn factor(&self, weight: f32) -> f32 {
         let by = 0.5 * self.gradient.dot(self.offset) / weight;
-        if self.value > 0.0 { (1.0 + by / self.value).clamp(MIN_FACTOR, MAX_MOVE) } else { 1.0 }
+        if self.value > 0.0 { (1.0 + by / self.value).clamp(MIN_MOVE, MAX_MOVE) } else { 1.0 }
     }
 }
 

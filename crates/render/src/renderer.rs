@@ -174,6 +174,8 @@ impl Renderer {
             let mut work = work.lock().unwrap_or_else(PoisonError::into_inner);
             self.tally.take(&mut work.tally);
             self.rays += std::mem::take(&mut work.rays);
+            // A refusal leaves it high (see `Walk::evaluate`).
+            work.nested = 0;
         }
         self.scene.fault.take().map_or(Ok(()), Err)
     }
