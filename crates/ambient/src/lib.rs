@@ -19,6 +19,7 @@
 //! thresholds scale with the scene.
 
 mod average;
+mod awake;
 mod cache;
 mod clamping;
 mod classical;

@@ -8,6 +8,7 @@
 //! its pieces, that is the time the run would take on P cores. A run that is not timed has nothing of this but one question
 //! a step.
 
+use crate::awake::Awake;
 use crate::observe::Clock;
 use rayon::prelude::*;
 use std::cmp::Reverse;
@@ -18,13 +19,9 @@ use std::time::Duration;
 /// Numbers of cores that a timed run is modelled on.
 pub const CORES: [usize; 4] = [1, 2, 8, 64];
 
-/// `f(0), f(1), … f(count − 1)`, from `least` on in parallel, in tasks of `piece`.
-fn in_order<R: Send>(count: usize, least: usize, piece: usize, f: impl Fn(usize) -> R + Sync + Send) -> Vec<R> {
-    if count < least {
-        (0..count).map(f).collect()
-    } else {
-        (0..count).into_par_iter().with_min_len(piece).with_max_len(piece).map(f).collect()
-    }
+/// `f(0), f(1), … f(count − 1)` in parallel, in tasks of `piece`.
+fn in_order<R: Send>(count: usize, piece: usize, f: impl Fn(usize) -> R + Sync + Send) -> Vec<R> {
+    (0..count).into_par_iter().with_min_len(piece).with_max_len(piece).map(f).collect()
 }
 
 /// Readings of a clock that tell what one takes.
@@ -32,7 +29,10 @@ const READINGS: u32 = 256;
 
 /// Does parallel steps, and times them if it is told to.
 #[derive(Debug, Default)]
-pub struct Steps(Option<Timed>);
+pub struct Steps {
+    timed: Option<Timed>,
+    awake: Awake,
+}
 
 #[derive(Debug)]
 struct Timed {
@@ -102,9 +102,9 @@ impl Chain {
         piece: usize,
         f: impl Fn(usize) -> R + Sync + Send,
     ) -> Vec<R> {
-        let Some(own) = self.own else { return in_order(count, 0, piece, f) };
+        let Some(own) = self.own else { return in_order(count, piece, f) };
         let alone = own().saturating_sub(self.since);
-        let parts = in_order(count.div_ceil(piece), 0, 1, |k| {
+        let parts = in_order(count.div_ceil(piece), 1, |k| {
             let start = own();
             let part: Vec<R> = (k * piece..count.min((k + 1) * piece)).map(&f).collect();
             (part, own().saturating_sub(start))
@@ -133,7 +133,7 @@ impl Steps {
         }
         let reading = wall().saturating_sub(start) / READINGS;
         let times = Times { since: own(), ..Times::default() };
-        Self(Some(Timed { wall, own, reading, times: Mutex::new(times) }))
+        Self { timed: Some(Timed { wall, own, reading, times: Mutex::new(times) }), awake: Awake::default() }
     }
 
     /// `f(0), f(1), … f(count − 1)`, from `least` on in parallel, in tasks of `piece`. Steps must not lie within steps.
@@ -144,32 +144,41 @@ impl Steps {
         piece: usize,
         f: impl Fn(usize) -> R + Sync + Send,
     ) -> Vec<R> {
-        match &self.0 {
-            Some(timed) if count >= least => timed.step(|own| {
+        if count < least {
+            return (0..count).map(f).collect();
+        }
+        let all = match &self.timed {
+            None => in_order(count, piece, f),
+            Some(timed) => timed.step(|own| {
                 let mut chain = Chain::new(Some(own));
                 let all = chain.in_order(count, piece, f);
                 (all, vec![chain.end()])
             }),
-            _ => in_order(count, least, piece, f),
-        }
+        };
+        self.awake.keep();
+        all
     }
 
     /// `f(0), f(1), … f(count − 1)` in parallel, each of which may use others for a part of its work.
     pub(crate) fn chains<R: Send>(&self, count: usize, f: impl Fn(usize, &mut Chain) -> R + Sync + Send) -> Vec<R> {
-        let Some(timed) = &self.0 else { return in_order(count, 2, 1, |k| f(k, &mut Chain::new(None))) };
-        timed.step(|own| {
-            let all = in_order(count, 2, 1, |k| {
-                let mut chain = Chain::new(Some(own));
-                let result = f(k, &mut chain);
-                (result, chain.end())
-            });
-            all.into_iter().unzip()
-        })
+        let all = match &self.timed {
+            None => in_order(count, 1, |k| f(k, &mut Chain::new(None))),
+            Some(timed) => timed.step(|own| {
+                let all = in_order(count, 1, |k| {
+                    let mut chain = Chain::new(Some(own));
+                    let result = f(k, &mut chain);
+                    (result, chain.end())
+                });
+                all.into_iter().unzip()
+            }),
+        };
+        self.awake.keep();
+        all
     }
 
     /// What has been timed so far, if it was; the thread that began asks.
     pub fn parallelism(&self) -> Option<Parallelism> {
-        let timed = self.0.as_ref()?;
+        let timed = self.timed.as_ref()?;
         let now = (timed.own)();
         let times = timed.times.lock().unwrap_or_else(PoisonError::into_inner);
         let mut beyond = times.beyond.clone();
