@@ -44,10 +44,12 @@ pub struct Cache {
     pub(crate) quantised: Option<Components>,
     pub(crate) statistics: Statistics,
     records: Vec<Record>,
-    /// Radii that rein each other in, if they are to.
+    /// Radii that rein each other in.
     reins: Option<Reins>,
     /// Where records are hardly reused, if that is to be found out.
     pub(crate) reuse: Option<Reuse>,
+    /// Set when a stored record has been reined in by a later one.
+    pub(crate) reined_in: bool,
     /// Radii changed by the last record; kept for its memory.
     changed: Vec<(u32, f64)>,
     /// Counts look-ups, if they are to be counted.
@@ -73,7 +75,8 @@ impl Cache {
             quantised: None,
             statistics: Statistics::default(),
             records: Vec::new(),
-            reins: params.systems.neighbour_clamping.then(|| Reins::new(cube_origin, cube_edge)),
+            reins: Reins::new(&params, cube_origin, cube_edge),
+            reined_in: false,
             reuse: params.systems.measured_reuse.then(|| Reuse::new(&Limits::new(&params, cube_edge), params.passes)),
             changed: Vec::new(),
         }
@@ -134,7 +137,8 @@ impl Cache {
         record.radii[1] = record.radii[1].max(record.radii[0]);
         // The direction code errs by up to 0.006°.
         record.u = (record.u - record.normal * record.u.dot(record.normal)).normalize_or(record.u);
-        if let Some(reins) = &self.reins {
+        let level = record.level;
+        if let Some(reins) = self.reins.as_ref().filter(|reins| reins.hold(level)) {
             let radius = reins.allowed(record.position, unwidened(&record));
             clamp(&mut record, radius);
         }
@@ -143,10 +147,12 @@ impl Cache {
         }
         self.average.add(record.level, record.values());
         let (position, radius) = (record.position, unwidened(&record));
+        let id = self.records.len() as u32;
         self.records.push(record);
-        if let Some(reins) = &mut self.reins {
+        if let Some(reins) = self.reins.as_mut().filter(|reins| reins.hold(level)) {
             self.changed.clear();
-            reins.insert(position, radius, &mut self.changed);
+            reins.insert(id, position, radius, &mut self.changed);
+            self.reined_in |= !self.changed.is_empty();
             for &(id, radius) in &self.changed {
                 let record = &mut self.records[id as usize];
                 clamp(record, radius);

@@ -2,9 +2,14 @@
 //! one record sees at distance R, one at distance d from it sees at R + d at most, so that no radius may exceed another's
 //! by more than their distance. A small feature or a crack that one record happens to find reins in its neighbours.
 //!
-//! Radii are those before widening by weight. A new one is lowered to min(Rⱼ + dⱼ), then the others to its own plus their
-//! distance; the result, R(x) = min over all records of (R as computed + distance), does not depend on the order.
+//! All records are reined in so if that is asked for; by itself, those of deeper bounces, by twice the distance. Their few samples
+//! miss what is small or low, such as the next row of solar panels, and a record that sees nothing but the sky reaches as far
+//! as any may, under the panels.
+//!
+//! Radii are those before widening by weight. A new one is lowered to min(Rⱼ + s dⱼ), then the others to its own plus s times
+//! their distance; the result, R(x) = min over all records of (R as computed + s · distance), does not depend on the order.
 
+use crate::params::Params;
 use ambit_base::DVec3;
 
 /// Records of a leaf before it is divided.
@@ -26,12 +31,27 @@ impl Node {
     const EMPTY: Self = Self { least: f64::INFINITY, greatest: 0.0, children: 0, members: Vec::new() };
 }
 
-/// Radii of all records, no two of which differ by more than the distance between them.
+/// Which records rein each other in, and how far radii may differ for the distance between them.
+#[derive(Clone, Copy, Debug)]
+struct Rule {
+    /// Those of this level and deeper ones.
+    level: u8,
+    slope: f64,
+}
+
+const ALL: Rule = Rule { level: 0, slope: 1.0 };
+/// In rooms records are as good and hardly more; with a slope of 4 some still reach under the panels.
+const DEEPER: Rule = Rule { level: 1, slope: 2.0 };
+
+/// Radii of records, no two of which differ by more than a multiple of the distance between them.
 #[derive(Clone, Debug)]
 pub(crate) struct Reins {
+    rule: Rule,
     corner: DVec3,
     edge: f64,
     nodes: Vec<Node>,
+    /// The record's number, of each that is reined in.
+    ids: Vec<u32>,
     positions: Vec<DVec3>,
     radii: Vec<f64>,
 }
@@ -62,26 +82,39 @@ impl At {
 }
 
 impl Reins {
-    /// None in the cube with the given low corner and edge.
-    pub(crate) fn new(corner: DVec3, edge: f64) -> Self {
-        Self { corner, edge, nodes: vec![Node::EMPTY], positions: Vec::new(), radii: Vec::new() }
+    /// None in the cube with the given low corner and edge, if a calculation has records that rein each other in.
+    pub(crate) fn new(params: &Params, corner: DVec3, edge: f64) -> Option<Self> {
+        let rule = if params.systems.neighbour_clamping { ALL } else { DEEPER };
+        let any = params.caches() && params.bounces > i32::from(rule.level);
+        any.then(|| Self::by(rule, corner, edge))
+    }
+
+    fn by(rule: Rule, corner: DVec3, edge: f64) -> Self {
+        let (ids, positions, radii) = (Vec::new(), Vec::new(), Vec::new());
+        Self { rule, corner, edge, nodes: vec![Node::EMPTY], ids, positions, radii }
+    }
+
+    /// True if records of this level are reined in.
+    pub(crate) fn hold(&self, level: u8) -> bool {
+        level >= self.rule.level
     }
 
     fn root(&self) -> At {
         At { node: 0, corner: self.corner, edge: self.edge }
     }
 
-    /// Enters the next record; returns its radius as clamped. Records that it reins in are pushed on `changed` with their
+    /// Enters record `id`; returns its radius as clamped. Records that it reins in are pushed on `changed` with their
     /// new radii.
-    pub(crate) fn insert(&mut self, position: DVec3, radius: f64, changed: &mut Vec<(u32, f64)>) -> f64 {
+    pub(crate) fn insert(&mut self, id: u32, position: DVec3, radius: f64, changed: &mut Vec<(u32, f64)>) -> f64 {
         // Whatever lies outside counts at the border of the cube, where bounds of distances hold for it, too.
         let inside = position.clamp(self.corner, self.corner + self.edge);
         let radius = self.lowest(self.root(), inside, radius);
         self.rein_in(self.root(), inside, radius, changed);
-        let id = self.radii.len() as u32;
+        let number = self.radii.len() as u32;
+        self.ids.push(id);
         self.positions.push(inside);
         self.radii.push(radius);
-        self.enter(id);
+        self.enter(number);
         radius
     }
 
@@ -90,14 +123,14 @@ impl Reins {
         self.lowest(self.root(), position.clamp(self.corner, self.corner + self.edge), radius)
     }
 
-    /// The least of `best` and Rⱼ + dⱼ over a cell.
+    /// The least of `best` and Rⱼ + s dⱼ over a cell.
     fn lowest(&self, at: At, p: DVec3, mut best: f64) -> f64 {
         let node = &self.nodes[at.node];
-        if node.least + at.distance(p) >= best {
+        if node.least + self.rule.slope * at.distance(p) >= best {
             return best;
         }
         for &j in &node.members {
-            best = best.min(self.radii[j as usize] + self.positions[j as usize].distance(p));
+            best = best.min(self.radii[j as usize] + self.rule.slope * self.positions[j as usize].distance(p));
         }
         if node.children != 0 {
             let nearest = at.child_of(p);
@@ -108,20 +141,21 @@ impl Reins {
         best
     }
 
-    /// Lowers all radii of a cell to `radius` plus the distance from `p`.
+    /// Lowers all radii of a cell to `radius` plus s times the distance from `p`.
     fn rein_in(&mut self, at: At, p: DVec3, radius: f64, changed: &mut Vec<(u32, f64)>) {
         let node = &self.nodes[at.node];
-        if node.greatest <= radius + at.distance(p) {
+        let slope = self.rule.slope;
+        if node.greatest <= radius + slope * at.distance(p) {
             return;
         }
         let children = node.children;
         let (mut least, mut greatest) = (f64::INFINITY, 0.0f64);
         for &j in &node.members {
-            let most = radius + self.positions[j as usize].distance(p);
+            let most = radius + slope * self.positions[j as usize].distance(p);
             let own = &mut self.radii[j as usize];
             if *own > most {
                 *own = most;
-                changed.push((j, most));
+                changed.push((self.ids[j as usize], most));
             }
             least = least.min(*own);
             greatest = greatest.max(*own);
@@ -139,8 +173,8 @@ impl Reins {
     }
 
     /// Files a record in its leaf.
-    fn enter(&mut self, id: u32) {
-        let (p, r) = (self.positions[id as usize], self.radii[id as usize]);
+    fn enter(&mut self, number: u32) {
+        let (p, r) = (self.positions[number as usize], self.radii[number as usize]);
         let mut at = self.root();
         let mut depth = 0;
         loop {
@@ -148,7 +182,7 @@ impl Reins {
             node.least = node.least.min(r);
             node.greatest = node.greatest.max(r);
             if node.children == 0 {
-                node.members.push(id);
+                node.members.push(number);
                 if node.members.len() > LEAF && depth < DEEPEST {
                     self.divide(at);
                 }
@@ -188,31 +222,31 @@ mod tests {
         (0..count).map(point).collect()
     }
 
-    /// R(x) = min over all of (R + distance), by brute force.
-    fn expected(all: &[(DVec3, f64)], p: DVec3) -> f64 {
-        all.iter().map(|(q, r)| r + q.distance(p)).fold(f64::INFINITY, f64::min)
+    /// R(x) = min over all of (R + s · distance), by brute force.
+    fn expected(all: &[(DVec3, f64)], p: DVec3, slope: f64) -> f64 {
+        all.iter().map(|(q, r)| r + slope * q.distance(p)).fold(f64::INFINITY, f64::min)
     }
 
     #[test]
     fn radii_are_those_of_brute_force_in_any_order_and_at_any_scale() {
-        for scale in [1e-4, 1.0, 1e5] {
+        for (scale, rule) in [1e-4, 1.0, 1e5].into_iter().flat_map(|scale| [(scale, ALL), (scale, DEEPER)]) {
             let all = points(600, scale);
             for reversed in [false, true] {
-                let mut reins = Reins::new(DVec3::ZERO, scale);
+                let mut reins = Reins::by(rule, DVec3::ZERO, scale);
                 let mut order = all.clone();
                 if reversed {
                     order.reverse();
                 }
                 let mut seen: Vec<f64> = Vec::new();
-                for &(p, r) in &order {
+                for (k, &(p, r)) in order.iter().enumerate() {
                     let mut changed = Vec::new();
-                    seen.push(reins.insert(p, r, &mut changed));
-                    for &(j, r) in &changed {
-                        seen[j as usize] = r;
+                    seen.push(reins.insert(10 + k as u32, p, r, &mut changed));
+                    for &(id, r) in &changed {
+                        seen[id as usize - 10] = r;
                     }
                 }
                 for (k, &(p, _)) in order.iter().enumerate() {
-                    let want = expected(&all, p);
+                    let want = expected(&all, p, rule.slope);
                     assert!((seen[k] - want).abs() <= 1e-9 * scale, "scale {scale}: {} for {want}", seen[k]);
                 }
             }
@@ -221,11 +255,11 @@ mod tests {
 
     #[test]
     fn coincident_records_end_with_the_smallest_radius() {
-        let mut reins = Reins::new(DVec3::ZERO, 1.0);
+        let mut reins = Reins::by(ALL, DVec3::ZERO, 1.0);
         let mut changed = Vec::new();
         for k in 0..100 {
             let r = 1.0 / f64::from(k + 1);
-            assert_eq!(reins.insert(DVec3::splat(0.3), r, &mut changed), r);
+            assert_eq!(reins.insert(k, DVec3::splat(0.3), r, &mut changed), r);
         }
         assert!(reins.radii.iter().all(|&r| r == 0.01));
     }

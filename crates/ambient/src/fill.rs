@@ -194,13 +194,15 @@ impl Cache {
         let fallback = self.fallback();
         let mut delta = self.store.emptied();
         let first = self.records().len();
+        self.reined_in = false;
         for (&q, outcome) in picks.iter().zip(outcomes) {
             values[q] = match outcome {
                 Outcome::Record(record, value) => {
                     let sum = delta.lookup(&self.limits, sampler, &queries[q]);
                     let covered = sum.answer().is_some() && sum.is_enough(self.params.enough(record.level));
                     if !covered && self.insert(record.clone()) {
-                        delta.insert(record, &self.limits);
+                        let stored = self.records().last().unwrap_or(record);
+                        delta.insert(stored, &self.limits);
                     }
                     *value
                 }
@@ -211,8 +213,8 @@ impl Cache {
                 Outcome::Nothing => fallback.into(),
             };
         }
-        if self.params.systems.neighbour_clamping {
-            // Those of this round may have reined each other in.
+        if self.reined_in {
+            // Perhaps those of this round.
             delta = self.store.emptied();
             for record in &self.records()[first..] {
                 delta.insert(record, &self.limits);

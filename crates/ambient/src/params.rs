@@ -58,7 +58,8 @@ pub struct Params {
 pub struct Systems {
     /// `--actual-weights`: records and their samples weigh what the reflectances on the path come to, instead of ½^level.
     pub actual_weights: bool,
-    /// `--neighbor-clamping`: no radius exceeds another record's by more than the distance between them.
+    /// `--neighbor-clamping`: no radius exceeds another record's by more than the distance between them; else radii of deeper
+    /// bounces do not by more than twice the distance.
     pub neighbour_clamping: bool,
     /// `--measured-reuse`: from level 1 on few samples, used once, where records are hardly reused.
     pub measured_reuse: bool,
