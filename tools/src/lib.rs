@@ -11,3 +11,4 @@ pub mod rtrace;
 mod session;
 mod spectral;
 mod statistics;
+mod threads;

@@ -1,8 +1,9 @@
 //! What a rendering program does around its work: reading the command line, messages, signals, the exit status.
 
+use crate::threads::start_threads;
 use ambit_cli::{
     About, Common, ConsoleMessages, Failure, Features, Outside, Process, Progress, Row, Scan, Signals, VERSION, answer,
-    attach_error_file, completions, defaults, long_help, man_page, say, scan,
+    attach_error_file, completions, defaults, long_help, man_page, scan,
 };
 use ambit_file::{
     Library, SearchPath, Zone, base_name, bytes_of, capture_lines, command_line, text_of, variable, word_of,
@@ -120,39 +121,6 @@ pub(crate) fn split(mut arguments: impl Iterator<Item = OsString>) -> (String, V
     (program, arguments.map(text).collect())
 }
 
-/// The variable that [`processors`] asks.
-const THREADS: &str = "AMBIT_THREADS";
-
-/// How many threads to use unless `-n` says so: one a processor, or what the environment says. Packages that start a
-/// program on each processor give none of them `-n`, and would have as many threads as the square of their number.
-pub(crate) fn processors() -> Result<usize, Failure> {
-    let Some(value) = variable(THREADS).filter(|value| !value.is_empty()) else {
-        return Ok(std::thread::available_parallelism().map_or(1, std::num::NonZero::get));
-    };
-    match value.parse() {
-        Ok(threads) if threads > 0 => Ok(threads),
-        _ => Err(Failure::user(format!("bad {THREADS} '{value}' (expected a whole number above 0)"))),
-    }
-}
-
-/// Bytes of stack of every thread that follows rays: enough for as many reflections as a ray may have, one waiting for the
-/// next. Only what is used takes memory.
-const STACK: usize = 128 << 20;
-
-/// Runs a program on a thread with that much stack.
-pub(crate) fn on_deep_stack(program: impl FnOnce() -> ExitCode + Send + 'static) -> ExitCode {
-    let thread = std::thread::Builder::new().name("main".into()).stack_size(STACK).spawn(program);
-    match thread.map(std::thread::JoinHandle::join) {
-        Ok(Ok(status)) => status,
-        // The thread has said why it panicked.
-        Ok(Err(_)) => ExitCode::from(3),
-        Err(e) => {
-            say(format_args!("system - cannot start a thread: {e}"));
-            ExitCode::from(2)
-        }
-    }
-}
-
 impl Session {
     /// A session that knows nothing but its name.
     pub(crate) fn new(program: String, reports: bool) -> Self {
@@ -250,14 +218,7 @@ impl Session {
                 return Err(Stop::Failure(Failure { class: ambit_cli::Class::System, text: String::new() }));
             }
         }
-        // The main thread is one of them: a step that runs alone costs no change of threads.
-        rayon::ThreadPoolBuilder::new()
-            .stack_size(STACK)
-            .num_threads(common.threads())
-            .use_current_thread()
-            .build_global()
-            .map_err(|e| Failure::internal(format!("cannot start threads: {e}")))?;
-        Ok(())
+        Ok(start_threads(common.threads())?)
     }
 
     /// From here on there are files to close: a signal leaves time for that.

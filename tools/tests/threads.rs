@@ -40,3 +40,29 @@ fn what_is_no_number_of_threads_is_refused_where_it_is_asked_for() {
         assert!(run(program, "1", &["-defaults"]).status.success());
     }
 }
+
+/// Batch systems limit the address space, of which a thread's stack takes much, though little memory.
+#[test]
+#[cfg(target_os = "linux")]
+fn where_address_space_is_limited_there_are_fewer_threads_and_the_same_answer() {
+    let scratch = tempfile::tempdir().expect("a scratch folder can be made");
+    let octree = scratch.path().join("scene.oct");
+    let scene = scratch.path().join("scene.rad");
+    std::fs::write(&scene, "void glow g 0 0 4 1 2 3 0\ng sphere s 0 0 4 0 0 0 5\n").expect("a scene is written");
+    let made = Command::new(env!("CARGO_BIN_EXE_oconv")).args(["-w", "-f"]).arg(&scene).output().expect("oconv runs");
+    std::fs::write(&octree, made.stdout).expect("an octree is written");
+    let limited = |limit: &str| {
+        let line = "ulimit -v $1; echo 9 0 0 -1 0 0 | exec \"$2\" -h -n 16 \"$3\"";
+        let mut shell = Command::new("sh");
+        shell.args(["-c", line, "sh", limit, PROGRAMS[0]]).arg(&octree).output().expect("a shell runs")
+    };
+    for limit in ["unlimited", "3000000", "250000"] {
+        let answer = limited(limit);
+        let text = String::from_utf8_lossy(&answer.stderr).into_owned();
+        assert!(answer.status.success(), "{limit}: {text}");
+        assert_eq!(String::from_utf8_lossy(&answer.stdout).trim(), "1.000000e+00\t2.000000e+00\t3.000000e+00");
+    }
+    let answer = limited("50000");
+    let text = String::from_utf8_lossy(&answer.stderr).into_owned();
+    assert!(answer.status.code() == Some(2) && text.starts_with("rtrace: system - cannot start a thread"), "{text}");
+}

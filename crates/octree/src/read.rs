@@ -130,7 +130,9 @@ fn read(
         })
         .map_err(wrong)?;
     let frozen = scene_files.is_empty();
-    if frozen {
+    if frozen && stored_count == 0 && input.is_at_end() {
+        // Made of nothing, not even frozen: it has neither scene files nor a table of types.
+    } else if frozen {
         frozen::read(&mut input, width, name, scene, notify)?;
     } else {
         let mut reader = Reader::new(scene, notify, runner);

@@ -11,7 +11,8 @@ mod watch;
 
 use crate::colour::Conversion;
 use crate::light::{Scene, octree};
-use crate::session::{Session, Stop, Tool, on_deep_stack, processors, split};
+use crate::session::{Session, Stop, Tool, split};
+use crate::threads::{on_deep_stack, processors};
 use ambit_base::Notify;
 use ambit_cli::{About, COMMON_FEATURES, Failure, Features, Output, PICTURE_FEATURES, PictureOptions, picture_table};
 use ambit_file::PixelSpace;
@@ -34,7 +35,7 @@ const GREATEST_SPACING: i32 = 16;
 /// Runs the program.
 pub fn main(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let (program, words) = split(arguments);
-    on_deep_stack(move || work(program, words))
+    on_deep_stack(&program.clone(), move || work(program, words))
 }
 
 fn work(program: String, words: Vec<String>) -> ExitCode {

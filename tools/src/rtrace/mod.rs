@@ -8,8 +8,9 @@ mod stream;
 mod tree;
 
 use crate::light::{self, Scene};
-use crate::session::{Session, Stop, Tool, on_deep_stack, processors, split};
+use crate::session::{Session, Stop, Tool, split};
 use crate::spectral::Converter;
+use crate::threads::{on_deep_stack, processors};
 use ambit_base::Notify;
 use ambit_cli::{
     About, COMMON_FEATURES, Failure, Features, Field, OutputFormat, OutputSpec, RAY_FEATURES, RayOptions,
@@ -35,7 +36,7 @@ const ABOUT: About = About {
 /// Runs the program.
 pub fn main(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let (program, words) = split(arguments);
-    on_deep_stack(move || work(program, words))
+    on_deep_stack(&program.clone(), move || work(program, words))
 }
 
 fn work(program: String, words: Vec<String>) -> ExitCode {

@@ -45,7 +45,8 @@ fn build_range(
         match object.kind.class() {
             Class::Surface if object.kind != Kind::Source => {
                 let (shape, warnings) = Shape::from_object(scene, id)?;
-                for warning in warnings {
+                // What is never hit is in no octree, and oconv has told of it.
+                for warning in warnings.iter().filter(|w| !w.complaint.is_degenerate()) {
                     environment.notify.warn(&warning.text);
                 }
                 builder.add(id, &shape, rank);
