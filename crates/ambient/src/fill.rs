@@ -93,23 +93,36 @@ impl Cache {
         let mut whole = vec![false; queries.len()];
         let smooth = level == 0 && limits.smoothing > 1.0;
         let mut open: Vec<usize> = (0..queries.len()).collect();
-        let mut apart = limits.accuracy * limits.max_radius;
+        let farthest = limits.accuracy * limits.max_radius;
+        let mut apart = farthest;
         let least = 0.5 * limits.accuracy * limits.min_radius;
         let mut most = FIRST;
         // What the records around each query weigh together, where that matters.
         let enough = self.params.enough(level);
-        let mut weights = if enough > 0.0 {
-            self.steps
-                .in_order(queries.len(), FEW, FEW / 2, |q| self.store.lookup(&limits, sampler, &queries[q]).weight)
-        } else {
-            vec![0.0; queries.len()]
-        };
-        while !open.is_empty() {
+        let mut weights = vec![0.0; queries.len()];
+        self.weigh(sampler, enough, queries, &open, &mut weights);
+        loop {
+            if open.is_empty() {
+                // The round's records alone gave a provisional answer; all of them give the final one. Some that were reined in
+                // meanwhile do not reach what they answered: there it is asked again.
+                let last = self.steps.in_order(queries.len(), FEW, FEW / 2, |q| {
+                    if whole[q] { None } else { self.answer(&self.store.lookup(&limits, sampler, &queries[q]), level) }
+                });
+                open = (0..queries.len()).filter(|&q| last[q].is_none() && !picked[q]).collect();
+                for (value, last) in values.iter_mut().zip(last) {
+                    *value = last.unwrap_or(*value);
+                }
+                if open.is_empty() {
+                    return values;
+                }
+                self.weigh(sampler, enough, queries, &open, &mut weights);
+                apart = farthest;
+            }
             for q in self.rent(sampler, level, queries, &mut open, &mut values) {
                 (picked[q], whole[q]) = (true, true);
             }
             if open.is_empty() {
-                break;
+                continue;
             }
             self.statistics.rounds += 1;
             let Selection { picks, maximal, blocked } = select(&limits, queries, &open, &exempt, apart, most);
@@ -149,14 +162,26 @@ impl Cache {
                 apart = (0.5 * apart).max(least);
             }
         }
-        // The round's records alone gave a provisional answer; all of them give the final one.
-        let last = self.steps.in_order(queries.len(), FEW, FEW / 2, |q| {
-            if whole[q] { None } else { self.answer(&self.store.lookup(&limits, sampler, &queries[q]), level) }
-        });
-        for (value, last) in values.iter_mut().zip(last) {
-            *value = last.unwrap_or(*value);
+    }
+
+    /// Notes what the records around the open queries weigh together, if there is a weight that they must have.
+    fn weigh<S: Sampler>(
+        &self,
+        sampler: &S,
+        enough: f32,
+        queries: &[Query<S::Origin>],
+        open: &[usize],
+        weights: &mut [f32],
+    ) {
+        if enough <= 0.0 {
+            return;
         }
-        values
+        let sums = self
+            .steps
+            .in_order(open.len(), FEW, FEW / 2, |i| self.store.lookup(&self.limits, sampler, &queries[open[i]]).weight);
+        for (&q, weight) in open.iter().zip(sums) {
+            weights[q] = weight;
+        }
     }
 
     /// Answers the open queries where records are hardly reused, each by a hemisphere of its own that is not kept.
