@@ -108,9 +108,13 @@ impl Cache {
         self.quantised = Some(components);
     }
 
-    /// Uses records at most as far as is known of their corrals: a multiple of their reach, 1 for those of Radiance.
+    /// Uses records at most as far as is known of their corrals: a multiple of their reach, 1 for those of Radiance. The latter
+    /// serve as they are in Radiance, and are reined in only if that is asked for.
     pub fn smooth_at_most(&mut self, smoothing: f32) {
         self.limits.smoothing = self.limits.smoothing.min(smoothing).max(1.0);
+        if smoothing <= 1.0 && !self.params.systems.neighbour_clamping {
+            self.reins = None;
+        }
     }
 
     /// Takes in records from a file. Implausible ones and duplicates are dropped; returns how many.
