@@ -48,10 +48,8 @@ pub struct Cache {
     reins: Option<Reins>,
     /// Where records are hardly reused, if that is to be found out.
     pub(crate) reuse: Option<Reuse>,
-    /// Set when a stored record has been reined in by a later one.
-    pub(crate) reined_in: bool,
-    /// Radii changed by the last record; kept for its memory.
-    changed: Vec<(u32, f64)>,
+    /// Records that the last one has reined in, and their radii before widening.
+    pub(crate) changed: Vec<(u32, f64)>,
     /// Counts look-ups, if they are to be counted.
     pub(crate) observer: Option<Arc<Observer>>,
     pub(crate) stopwatch: Stopwatch,
@@ -76,7 +74,6 @@ impl Cache {
             statistics: Statistics::default(),
             records: Vec::new(),
             reins: Reins::new(&params, cube_origin, cube_edge),
-            reined_in: false,
             reuse: params.systems.measured_reuse.then(|| Reuse::new(&Limits::new(&params, cube_edge), params.passes)),
             changed: Vec::new(),
         }
@@ -141,6 +138,7 @@ impl Cache {
         record.radii[1] = record.radii[1].max(record.radii[0]);
         // The direction code errs by up to 0.006°.
         record.u = (record.u - record.normal * record.u.dot(record.normal)).normalize_or(record.u);
+        self.changed.clear();
         let level = record.level;
         if let Some(reins) = self.reins.as_ref().filter(|reins| reins.hold(level)) {
             let radius = reins.allowed(record.position, unwidened(&record));
@@ -154,9 +152,7 @@ impl Cache {
         let id = self.records.len() as u32;
         self.records.push(record);
         if let Some(reins) = self.reins.as_mut().filter(|reins| reins.hold(level)) {
-            self.changed.clear();
             reins.insert(id, position, radius, &mut self.changed);
-            self.reined_in |= !self.changed.is_empty();
             for &(id, radius) in &self.changed {
                 let record = &mut self.records[id as usize];
                 clamp(record, radius);

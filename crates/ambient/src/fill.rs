@@ -93,8 +93,7 @@ impl Cache {
         let mut whole = vec![false; queries.len()];
         let smooth = level == 0 && limits.smoothing > 1.0;
         let mut open: Vec<usize> = (0..queries.len()).collect();
-        let farthest = limits.accuracy * limits.max_radius;
-        let mut apart = farthest;
+        let mut apart = limits.accuracy * limits.max_radius;
         let least = 0.5 * limits.accuracy * limits.min_radius;
         let mut most = FIRST;
         // What the records around each query weigh together, where that matters.
@@ -116,7 +115,6 @@ impl Cache {
                     return values;
                 }
                 self.weigh(sampler, enough, queries, &open, &mut weights);
-                apart = farthest;
             }
             for q in self.rent(sampler, level, queries, &mut open, &mut values) {
                 (picked[q], whole[q]) = (true, true);
@@ -219,15 +217,20 @@ impl Cache {
         let fallback = self.fallback();
         let mut delta = self.store.emptied();
         let first = self.records().len();
-        self.reined_in = false;
         for (&q, outcome) in picks.iter().zip(outcomes) {
             values[q] = match outcome {
                 Outcome::Record(record, value) => {
                     let sum = delta.lookup(&self.limits, sampler, &queries[q]);
                     let covered = sum.answer().is_some() && sum.is_enough(self.params.enough(record.level));
                     if !covered && self.insert(record.clone()) {
-                        let stored = self.records().last().unwrap_or(record);
-                        delta.insert(stored, &self.limits);
+                        // What is new is numbered alike in both trees, but for where it begins.
+                        let new = &self.records()[first..];
+                        for &(id, _) in self.changed.iter().filter(|(id, _)| *id as usize >= first) {
+                            let k = id as usize - first;
+                            delta.shrink(k as u32, new[k].radii);
+                        }
+                        let both = delta.insert(new.last().unwrap_or(record), &self.limits);
+                        debug_assert!(both, "what the store takes its part takes");
                     }
                     *value
                 }
@@ -237,13 +240,6 @@ impl Cache {
                 }
                 Outcome::Nothing => fallback.into(),
             };
-        }
-        if self.reined_in {
-            // Perhaps those of this round.
-            delta = self.store.emptied();
-            for record in &self.records()[first..] {
-                delta.insert(record, &self.limits);
-            }
         }
         delta
     }
