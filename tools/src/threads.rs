@@ -42,7 +42,8 @@ pub(crate) fn on_deep_stack(name: &str, program: impl FnOnce() -> ExitCode + Sen
 }
 
 /// Starts the threads that share the work; the one that calls is one of them: a step that runs alone costs no change of
-/// threads. Where address space is limited (`ulimit -v`, batch systems) there are no more than half of it holds, and results are the same.
+/// threads. Where address space is limited (`ulimit -v`, batch systems) there are no more than half of it holds, whatever
+/// is wanted: results are the same.
 pub(crate) fn start_threads(wanted: usize) -> Result<(), Failure> {
     let limit = getrlimit(Resource::As).current;
     let room = limit.map_or(usize::MAX, |space| (space / 2 / SPACE) as usize);

@@ -1,4 +1,5 @@
 //! Octrees of nothing: without scene files, or of files without surfaces. Packages start with one and add scene files to it.
+//! And surfaces that are nothing.
 
 use std::io::Write;
 use std::path::Path;
@@ -50,4 +51,27 @@ fn octrees_of_nothing_are_read_and_added_to() {
             .status
             .success()
     );
+}
+
+/// Packages take what is on standard error for an error: each is told once, by the program that leaves it out.
+#[test]
+fn of_surfaces_that_are_never_hit_oconv_alone_tells() {
+    let scratch = tempfile::tempdir().expect("a scratch folder can be made");
+    let write = |name: &str, text: &str| std::fs::write(scratch.path().join(name), text).expect("a file is written");
+    write(
+        "odd.rad",
+        "void light g 0 0 3 1 2 3\ng polygon line 0 0 9 0 0 0 1 0 0 2 0 0\ng sphere dot 0 0 4 0 0 0 0\n\
+         g ring none 0 0 8 0 0 3 0 0 1 .5 .5\ng sphere inside 0 0 4 0 0 9 -1\n",
+    );
+    let done = Command::new(OCONV).arg("odd.rad").current_dir(scratch.path()).output().expect("oconv runs");
+    let told = String::from_utf8_lossy(&done.stderr).into_owned();
+    for text in ["zero area for polygon \"line\"", "zero radius for sphere \"dot\"", "illegal radii for ring \"none\""]
+    {
+        assert!(told.contains(text), "{told}");
+    }
+    std::fs::write(scratch.path().join("odd.oct"), done.stdout).expect("an octree is written");
+    let mut program = Command::new(env!("CARGO_BIN_EXE_rtrace"));
+    let ran = program.args(["-h", "odd.oct"]).current_dir(scratch.path()).stdin(Stdio::null()).output();
+    let told = String::from_utf8(ran.expect("rtrace runs").stderr).expect("text");
+    assert_eq!(told, "rtrace: warning - negative radius for sphere \"inside\"\n");
 }

@@ -2,7 +2,8 @@
 //!
 //! What one thread does between two steps takes some ten microseconds, and so does waking those that have gone to sleep
 //! meanwhile. After a step they therefore go on looking for work until none has come for [`PATIENCE`]. This changes when
-//! work begins, never what comes out.
+//! work begins, never what comes out. (A thread may come to look while it waits within a step for what another does for it: rarely,
+//! and it goes on at the latest when its patience ends.)
 
 use rayon::Yield;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -13,7 +14,7 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_micros(100);
 /// From when on it lets other programs run in between.
 const EAGERNESS: Duration = Duration::from_micros(20);
-/// Pauses of the processor between two looks, which disturb those who work.
+/// Pauses of the processor between two looks: looking disturbs those who work.
 const PAUSES: u32 = 16;
 
 /// Keeps the threads of the pool awake in which it is first asked to.
@@ -70,8 +71,8 @@ impl Kept {
                 None => break,
             }
         }
-        self.count.fetch_sub(1, Ordering::Relaxed);
         self.threads[thread].store(false, Ordering::Relaxed);
+        self.count.fetch_sub(1, Ordering::Release);
     }
 }
 
@@ -84,16 +85,26 @@ mod tests {
     fn those_who_are_kept_awake_do_the_work_and_then_give_up() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("threads can be had");
         let awake = Awake::default();
+        let end = Instant::now() + Duration::from_secs(20);
+        let in_time = || assert!(Instant::now() < end, "not within twenty seconds");
         pool.install(|| {
-            for _ in 0..200 {
+            // Until both others look at once, and one of them does a piece while it does.
+            let (mut both, mut worked) = (false, false);
+            while !(both && worked) {
+                in_time();
                 awake.keep();
-                assert_eq!((0..1000u32).into_par_iter().with_max_len(1).sum::<u32>(), 499_500);
+                let kept = awake.0.get().expect("the pool was asked");
+                both |= kept.count.load(Ordering::Relaxed) == 2;
+                let looking = |_| {
+                    let thread = rayon::current_thread_index().expect("a thread of the pool");
+                    u32::from(kept.threads[thread].load(Ordering::Relaxed))
+                };
+                worked |= (0..1000u32).into_par_iter().with_max_len(1).map(looking).sum::<u32>() > 0;
             }
         });
         let kept = awake.0.get().expect("the pool was asked");
-        let end = Instant::now() + Duration::from_secs(20);
-        while kept.count.load(Ordering::Relaxed) > 0 {
-            assert!(Instant::now() < end, "they never give up");
+        while kept.count.load(Ordering::Acquire) > 0 {
+            in_time();
             std::thread::sleep(PATIENCE);
         }
         assert!(kept.threads.iter().all(|t| !t.load(Ordering::Relaxed)));

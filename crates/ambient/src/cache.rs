@@ -3,10 +3,11 @@
 use crate::average::Average;
 use crate::clamping::Reins;
 use crate::components::Components;
+use crate::file::Habits;
 use crate::light::Light;
 use crate::lookup::Sum;
 use crate::observe::{Observer, Stopwatch};
-use crate::params::{Limits, Params};
+use crate::params::{Clamping, Limits, Params};
 use crate::radii::ANISOTROPY;
 use crate::record::Record;
 use crate::reuse::Reuse;
@@ -105,11 +106,10 @@ impl Cache {
         self.quantised = Some(components);
     }
 
-    /// Uses records at most as far as is known of their corrals: a multiple of their reach, 1 for those of Radiance. The latter
-    /// serve as they are in Radiance, and are reined in only if that is asked for.
-    pub fn smooth_at_most(&mut self, smoothing: f32) {
-        self.limits.smoothing = self.limits.smoothing.min(smoothing).max(1.0);
-        if smoothing <= 1.0 && !self.params.systems.neighbour_clamping {
+    /// Uses records as those of a file are to be used, which are loaded next.
+    pub fn adopt(&mut self, habits: Habits) {
+        self.limits.smoothing = self.limits.smoothing.min(habits.smoothing).max(1.0);
+        if !habits.reined && self.params.systems.clamping == Clamping::Deeper {
             self.reins = None;
         }
     }

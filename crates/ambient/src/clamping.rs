@@ -2,14 +2,14 @@
 //! one record sees at distance R, one at distance d from it sees at R + d at most, so that no radius may exceed another's
 //! by more than their distance. A small feature or a crack that one record happens to find reins in its neighbours.
 //!
-//! All records are reined in so if that is asked for; by itself, those of deeper bounces, by twice the distance. Their few samples
-//! miss what is small or low, such as the next row of solar panels, and a record that sees nothing but the sky reaches as far
-//! as any may, under the panels.
+//! All records are reined in so if that is asked for; otherwise those of deeper bounces, by twice the distance. Their few
+//! samples miss what is small or low, such as the next row of solar panels, and a record that sees nothing but the sky
+//! reaches as far as any may, under the panels.
 //!
 //! Radii are those before widening by weight. A new one is lowered to min(Rⱼ + s dⱼ), then the others to its own plus s times
 //! their distance; the result, R(x) = min over all records of (R as computed + s · distance), does not depend on the order.
 
-use crate::params::Params;
+use crate::params::{Clamping, Params};
 use ambit_base::DVec3;
 
 /// Records of a leaf before it is divided.
@@ -40,10 +40,10 @@ struct Rule {
 }
 
 const ALL: Rule = Rule { level: 0, slope: 1.0 };
-/// In rooms records are as good and hardly more; with a slope of 4 some still reach under the panels.
+/// In rooms errors stay the same and records grow little; with a slope of 4 some still reach under the panels.
 const DEEPER: Rule = Rule { level: 1, slope: 2.0 };
 
-/// Radii of records, no two of which differ by more than a multiple of the distance between them.
+/// Radii of records before widening, no two of which differ by more than a multiple of the distance between them.
 #[derive(Clone, Debug)]
 pub(crate) struct Reins {
     rule: Rule,
@@ -84,7 +84,11 @@ impl At {
 impl Reins {
     /// None in the cube with the given low corner and edge, if a calculation has records that rein each other in.
     pub(crate) fn new(params: &Params, corner: DVec3, edge: f64) -> Option<Self> {
-        let rule = if params.systems.neighbour_clamping { ALL } else { DEEPER };
+        let rule = match params.systems.clamping {
+            Clamping::All => ALL,
+            Clamping::Deeper => DEEPER,
+            Clamping::Nobody => return None,
+        };
         let any = params.caches() && params.bounces > i32::from(rule.level);
         any.then(|| Self::by(rule, corner, edge))
     }

@@ -3,7 +3,8 @@
 //! Breadth first, level by level, in rounds of misses that cannot cover each other: picks stand at least the largest
 //! reach a·R₊ apart. Their samples are traced in parallel against the frozen cache; what those miss is resolved together
 //! one level down; then the records are made in parallel and published in order. Queries a round's records do not answer
-//! stay for the next; once every query has been considered at a distance, the distance is halved.
+//! stay for the next; once every query has been considered at a distance, the distance is halved. Where records were reined
+//! in meanwhile and do not reach any more what they answered, that is open once more.
 //!
 //! Nothing depends on time, threads or the order in which they finish: streams are keyed by the bits of position, normal
 //! and level, sums follow list order, and the constants below are part of the result.
@@ -93,7 +94,10 @@ impl Cache {
         let mut whole = vec![false; queries.len()];
         let smooth = level == 0 && limits.smoothing > 1.0;
         let mut open: Vec<usize> = (0..queries.len()).collect();
-        let mut apart = limits.accuracy * limits.max_radius;
+        let farthest = limits.accuracy * limits.max_radius;
+        let mut apart = farthest;
+        // True once questions are open that were settled before.
+        let mut again = false;
         let least = 0.5 * limits.accuracy * limits.min_radius;
         let mut most = FIRST;
         // What the records around each query weigh together, where that matters.
@@ -102,8 +106,8 @@ impl Cache {
         self.weigh(sampler, enough, queries, &open, &mut weights);
         loop {
             if open.is_empty() {
-                // The round's records alone gave a provisional answer; all of them give the final one. Some that were reined in
-                // meanwhile do not reach what they answered: there it is asked again.
+                // The round's records alone gave a provisional answer; all of them give the final one, unless those that
+                // gave it were reined in.
                 let last = self.steps.in_order(queries.len(), FEW, FEW / 2, |q| {
                     if whole[q] { None } else { self.answer(&self.store.lookup(&limits, sampler, &queries[q]), level) }
                 });
@@ -115,6 +119,7 @@ impl Cache {
                     return values;
                 }
                 self.weigh(sampler, enough, queries, &open, &mut weights);
+                (apart, again) = (farthest, true);
             }
             for q in self.rent(sampler, level, queries, &mut open, &mut values) {
                 (picked[q], whole[q]) = (true, true);
@@ -148,7 +153,7 @@ impl Cache {
                 .zip(found)
                 .map(|(&q, sum)| self.answer(&sum, level).filter(|_| weights[q] >= enough || sum.is_enough(enough)))
                 .collect();
-            if let Some(reuse) = &mut self.reuse {
+            if let Some(reuse) = self.reuse.as_mut().filter(|_| !again) {
                 let own = picks.iter().zip(&outcomes).filter(|(_, o)| matches!(o, Outcome::Record(..)));
                 own.for_each(|(&q, _)| reuse.made(&queries[q]));
                 // What is asked in several passes is one question.
@@ -229,7 +234,7 @@ impl Cache {
                             let k = id as usize - first;
                             delta.shrink(k as u32, new[k].radii);
                         }
-                        let both = delta.insert(new.last().unwrap_or(record), &self.limits);
+                        let both = delta.insert(new.last().expect("it was just stored"), &self.limits);
                         debug_assert!(both, "what the store takes its part takes");
                     }
                     *value

@@ -60,14 +60,15 @@ pub use cache::{Cache, Statistics};
 pub use codec::{Layout, RECORD_BYTES};
 pub use components::Components;
 pub use conversion::Observer;
-pub use file::{AmbientFile, Contents, FORMAT, FileError, Opened, Opening, PATIENCE, Reuse, scan, scan_header};
+pub use file::{AmbientFile, Contents, FORMAT, FileError, Habits, Opened, Opening, PATIENCE, Reuse, scan, scan_header};
 pub use file::{Comparison, Fingerprint, Gravity, Mark, MarkLine, fingerprint_lines};
 pub use file::{Segment, missing, remove_done, segments};
 pub use hemisphere::Hemisphere;
 pub use light::{APART, Light};
 pub use observe::{Clock, LEVELS, Observed};
 pub use params::{
-    ASSUMED_REFLECTANCE, Bounces, Interpolation, Limits, MOST_OVERLAP, OVERLAP, Params, SMOOTHING, Spacing, Systems,
+    ASSUMED_REFLECTANCE, Bounces, Clamping, Interpolation, Limits, MOST_OVERLAP, OVERLAP, Params, SMOOTHING, Spacing,
+    Systems,
 };
 pub use record::Record;
 pub use sampler::{Answer, Miss, Query, Sample, SampleRay, Sampler};

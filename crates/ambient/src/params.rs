@@ -58,9 +58,8 @@ pub struct Params {
 pub struct Systems {
     /// `--actual-weights`: records and their samples weigh what the reflectances on the path come to, instead of ½^level.
     pub actual_weights: bool,
-    /// `--neighbor-clamping`: no radius exceeds another record's by more than the distance between them; else radii of deeper
-    /// bounces do not by more than twice the distance.
-    pub neighbour_clamping: bool,
+    /// `--neighbor-clamping`: which records rein each other in.
+    pub clamping: Clamping,
     /// `--measured-reuse`: from level 1 on few samples, used once, where records are hardly reused.
     pub measured_reuse: bool,
     /// `--bounces`: what questions of deeper levels get of records nearer the eye.
@@ -69,6 +68,18 @@ pub struct Systems {
     pub spacing: Spacing,
     /// `--interpolation`: of what order values between records are.
     pub interpolation: Interpolation,
+}
+
+/// Which records rein each other in: by how much radii, before widening by weight, may exceed each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Clamping {
+    /// Those of deeper bounces, by twice the distance between them.
+    #[default]
+    Deeper,
+    /// All, by the distance between them.
+    All,
+    /// None, as in Radiance.
+    Nobody,
 }
 
 /// What questions get of records that have more bounces than are left at their level.

@@ -6,7 +6,7 @@
 //! by the processor time of the thread that does it, which neither other programs nor waiting disturb. The pieces are then
 //! dealt out anew, in order, each to the first of P cores that is free: with the serial work, and what a step costs beside
 //! its pieces, that is the time the run would take on P cores. A run that is not timed has nothing of this but one question
-//! a step.
+//! a step. Either has its threads stay awake between steps.
 
 use crate::awake::Awake;
 use crate::observe::Clock;
@@ -222,8 +222,8 @@ impl Timed {
 }
 
 impl Parallelism {
-    /// The time on the number of [`CORES`] with this index. A step wakes its threads in pairs: it costs what was measured
-    /// once for each doubling of the cores.
+    /// The time on the number of [`CORES`] with this index. A step's work is handed on from thread to thread, each time to twice
+    /// as many: it costs what was measured once for each doubling of the cores.
     pub fn time(&self, index: usize) -> Duration {
         let doublings = CORES[index].max(2).ilog2();
         self.serial + self.parallel[index] + self.step * (doublings * self.steps as u32)

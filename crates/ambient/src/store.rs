@@ -26,8 +26,8 @@ fn enough(level: u8) -> f32 {
     if level == 0 { f32::INFINITY } else { ENOUGH }
 }
 
-/// The least edge of a record's cells, in its reaches. With 1 the lists are shorter, but more than twice the memory is read, and memory is
-/// what look-ups wait for; with 4 more is compared than is saved.
+/// The least edge of a record's cells, in its reaches. With 1 the lists are shorter, but more than twice the memory is read,
+/// and memory is what look-ups wait for; with 4 more is compared than is saved.
 const CELL: f64 = 2.0;
 /// Depth at which insertion stops whatever the radius: below it cells differ by less than the rounding of coordinates.
 const MAX_DEPTH: u32 = 48;
@@ -68,6 +68,8 @@ pub(crate) struct Store {
     apart: bool,
     /// The lists, each a run of blocks.
     blocks: Vec<Block>,
+    /// True if a record lies where it was listed with a larger reach.
+    shrunk: bool,
     /// Runs given up by lists that grew: entry k holds the starts of those of 2^k blocks.
     vacant: Vec<Vec<u32>>,
 }
@@ -85,6 +87,7 @@ impl Store {
             further_passes: usize::from(passes.max(1)) - 1,
             apart,
             blocks: Vec::new(),
+            shrunk: false,
             vacant: Vec::new(),
         }
     }
@@ -140,6 +143,7 @@ impl Store {
     /// Lowers the radii of a record, the so-manieth inserted. It stays listed where it was: a little to search, nothing wrong.
     pub(crate) fn shrink(&mut self, id: u32, radii: [f32; 2]) {
         self.entries[id as usize].inverse_radii = radii.map(f32::recip);
+        self.shrunk = true;
     }
 
     /// What a record answers at its own place.
@@ -155,19 +159,21 @@ impl Store {
         }
     }
 
-    /// True if the cell at `depth` around a record lists one like it.
+    /// True if the cell at `depth` around a record lists one like it; any cell, where records may lie in larger ones.
     fn is_duplicate(&self, record: &Record, entry: &Entry, depth: u32, accuracy: f64) -> bool {
         let finest = self.finest(record.position);
-        let Some(node) = self.around(finest).map(|n| &self.nodes[n]).find(|n| n.depth == depth) else { return false };
-        let (corner, edge) = self.cell_around(finest, depth);
         let close = DUPLICATE * accuracy * f64::from(record.radii[0]);
-        let probe = Probe::new(record.position - corner, edge, Vec3::from_array(entry.normal), 0.0);
-        self.run_of(node).iter().flat_map(|block| block.candidates(&probe)).any(|id| {
+        let like = |id: u32| {
             let e = &self.entries[id as usize];
             e.level == entry.level
                 && e.weight == entry.weight
                 && e.normal == entry.normal
                 && (DVec3::from_array(e.position) - record.position).length_squared() < close * close
+        };
+        self.around(finest).map(|n| &self.nodes[n]).filter(|n| n.depth == depth || self.shrunk).any(|node| {
+            let (corner, edge) = self.cell_around(finest, node.depth);
+            let probe = Probe::new(record.position - corner, edge, Vec3::from_array(entry.normal), 0.0);
+            self.run_of(node).iter().flat_map(|block| block.candidates(&probe)).any(like)
         })
     }
 

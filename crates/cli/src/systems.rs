@@ -4,7 +4,7 @@ use crate::common::Carries;
 use crate::failure::Failure;
 use crate::rendering::Rendering;
 use crate::table::{Place, Row};
-use ambit_render::{Bounces, Interpolation, MOST_OVERLAP, Spacing};
+use ambit_render::{Bounces, Clamping, Interpolation, MOST_OVERLAP, Spacing};
 
 /// Beyond it, values of other walls' corners come in.
 const MOST_SMOOTHING: f32 = 2.0;
@@ -52,8 +52,8 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
         .values("HOW"),
         Row::new(
             "-neighbor-clamping",
-            Place::Bare(|s: &mut S| light(s).options.ambient.systems.neighbour_clamping = true),
-            "let no irradiance value reach farther than a neighbor does, plus the distance between them",
+            Place::Bare(|s: &mut S| light(s).options.ambient.systems.clamping = Clamping::All),
+            "let all irradiance values rein each other in: none reaches farther than a neighbor does, plus the distance between them (otherwise those of deeper bounces, by twice the distance)",
         ),
         Row::new(
             "-measured-reuse",

@@ -130,11 +130,11 @@ fn read(
         })
         .map_err(wrong)?;
     let frozen = scene_files.is_empty();
-    if frozen && stored_count == 0 && input.is_at_end() {
-        // Made of nothing, not even frozen: it has neither scene files nor a table of types.
-    } else if frozen {
+    // Made of nothing, and not even frozen: there is no table of types either.
+    let bare = frozen && stored_count == 0 && input.is_at_end();
+    if frozen && !bare {
         frozen::read(&mut input, width, name, scene, notify)?;
-    } else {
+    } else if !frozen {
         let mut reader = Reader::new(scene, notify, runner);
         scene_files.iter().try_for_each(|file| reader.read(file))?;
         if (scene.len() - first) as i64 != stored_count {

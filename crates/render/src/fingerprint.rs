@@ -8,7 +8,7 @@
 
 use crate::prepare::{Contents, Definition, Environment, Loaded};
 use crate::{Options, Selection};
-use ambit_ambient::{Bounces, Fingerprint, Gravity, Interpolation, Mark, MarkLine, Spacing};
+use ambit_ambient::{Bounces, Clamping, Fingerprint, Gravity, Interpolation, Mark, MarkLine, Spacing};
 use ambit_base::{Rgb, hash_bits, hash_point, mix};
 use ambit_file::{bytes_of, encode_float, general, text_of};
 use ambit_octree::Mesh;
@@ -312,7 +312,7 @@ fn option_marks(options: &Options, edge: f64, relays: bool) -> Vec<Mark> {
         // Values are converted, which a warning of its own tells.
         slight("cw", "-cw", options.spectrum.limits().map(g).join(",")),
         slight("spacing", "--spacing", spacing(a.systems.spacing).to_owned()),
-        slight("clamping", "--neighbor-clamping", switch(a.systems.neighbour_clamping)),
+        slight("clamping", "--neighbor-clamping", switch(a.systems.clamping == Clamping::All)),
         slight("weights", "--actual-weights", switch(a.systems.actual_weights)),
         slight(
             "bounces",

@@ -26,7 +26,7 @@ mod unbounded;
 mod walk;
 mod work;
 
-pub use ambit_ambient::{Bounces, Interpolation, MOST_OVERLAP, Spacing, Systems};
+pub use ambit_ambient::{Bounces, Clamping, Interpolation, MOST_OVERLAP, Spacing, Systems};
 pub use ambit_ambient::{Fingerprint, Reuse};
 pub use error::Error;
 pub use fingerprint::SceneFingerprint;

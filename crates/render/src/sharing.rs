@@ -3,7 +3,7 @@
 
 use crate::spectral::tristimulus;
 use crate::{Error, Renderer};
-use ambit_ambient::{AmbientFile, Components, FileError, Fingerprint, Opening, PATIENCE, Reuse};
+use ambit_ambient::{AmbientFile, Clamping, Components, FileError, Fingerprint, Opening, PATIENCE, Reuse};
 use ambit_base::Notify;
 use std::path::Path;
 
@@ -38,8 +38,8 @@ impl Renderer {
         let opened = AmbientFile::open(store.path, &self.opening(store, components), notify).map_err(|e| failed(&e))?;
         let cache = self.cache_mut();
         cache.quantise(components.clone());
-        if let Some(smoothing) = opened.smoothing {
-            cache.smooth_at_most(smoothing);
+        if let Some(habits) = opened.habits {
+            cache.adopt(habits);
         }
         cache.load(opened.records);
         let handed = cache.records().len();
@@ -47,14 +47,17 @@ impl Renderer {
         Ok(())
     }
 
-    /// Smooths no more than the ambient file's records will allow, from now on, and leaves it closed: what is estimated
+    /// Uses records as those of the ambient file will be used, from now on, and leaves it closed: what is estimated
     /// before it is shared is as what comes.
     pub fn foresee(&mut self, store: &Store<'_>) {
         let components = &self.options.spectrum.components(self.passes());
-        if let Some(smoothing) = AmbientFile::smoothing(store.path, &self.opening(store, components)) {
-            let own = &mut self.options.ambient.smoothing;
-            *own = own.min(smoothing);
-            self.cache_mut().smooth_at_most(smoothing);
+        if let Some(habits) = AmbientFile::habits(store.path, &self.opening(store, components)) {
+            let own = &mut self.options.ambient;
+            own.smoothing = own.smoothing.min(habits.smoothing);
+            if !habits.reined && own.systems.clamping == Clamping::Deeper {
+                own.systems.clamping = Clamping::Nobody;
+            }
+            self.cache_mut().adopt(habits);
         }
     }
 

@@ -13,12 +13,12 @@
 
 mod error;
 mod fingerprint;
+mod habits;
 mod open;
 mod reuse;
 mod scan;
 mod segment;
 mod share;
-mod smoothing;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -28,6 +28,7 @@ mod tests_segment;
 
 pub use error::FileError;
 pub use fingerprint::{Comparison, Fingerprint, Gravity, Mark, MarkLine, fingerprint_lines};
+pub use habits::Habits;
 pub use open::Opened;
 pub use reuse::{Opening, PATIENCE, Reuse};
 pub use scan::{Contents, FORMAT, scan, scan_header};

@@ -1,11 +1,11 @@
 //! Opening an ambient file: reading what is there, deciding whether it may be used, creating it if it is absent.
 
 use super::error::FileError;
+use super::habits::Habits;
 use super::reuse::{Opening, Reuse, Verdict};
 use super::scan::{Contents, FORMAT, scan_as};
 use super::segment::{has_segments, missing, remove_done, segments};
 use super::share::{AmbientFile, Locks, Spare, cut, io_error, lock, read_from, skipped};
-use super::smoothing::smoothing;
 use crate::codec::Layout;
 use crate::components::Components;
 use crate::conversion::{Conversion, DIGITS, SPLITS, Sampling};
@@ -32,12 +32,12 @@ pub struct Opened {
     pub records: Vec<Record>,
     /// The file to append to; none if it cannot be written, of which a warning has told.
     pub file: Option<AmbientFile>,
-    /// The smoothing for which the corrals of a file's records were made: 1 unless it tells. None of a new file.
-    pub smoothing: Option<f32>,
+    /// How the records are to be used; none of a new file.
+    pub habits: Option<Habits>,
 }
 
 impl Opened {
-    const NOTHING: Self = Self { records: Vec::new(), file: None, smoothing: None };
+    const NOTHING: Self = Self { records: Vec::new(), file: None, habits: None };
 }
 
 /// An ambient file on its way to being opened.
@@ -166,7 +166,7 @@ impl Entry<'_> {
         let (name, spare) = (self.name.clone(), self.spare(head));
         let (layout, components) = (Layout::CURRENT, self.opening.components.clone());
         let file = AmbientFile { file, name, layout, components, start, end: start, locks, waiting: Vec::new(), spare };
-        Ok(Opened { records: Vec::new(), file: Some(file), smoothing: None })
+        Ok(Opened { records: Vec::new(), file: Some(file), habits: None })
     }
 
     /// Locks a file of this entry; `None` if there are no locks to be had.
@@ -263,7 +263,7 @@ impl Entry<'_> {
     /// Goes on with a file that was read as its fingerprint allows.
     fn taken(&self, found: Existing, file: Arc<File>) -> Opened {
         let Existing { contents, verdict, end, locked } = found;
-        let smoothing = Some(smoothing(&contents.header));
+        let habits = Some(Habits::of(&contents.header));
         match verdict {
             Verdict::Leave(list) => self.left(&contents, &list),
             Verdict::Use(warning) => {
@@ -279,7 +279,7 @@ impl Entry<'_> {
                 let locks = if locked { Locks::Within(self.opening.patience) } else { Locks::Broken };
                 let file =
                     AmbientFile { file, name, layout, components, start, end, locks, waiting: Vec::new(), spare };
-                Opened { records, file: Some(file), smoothing }
+                Opened { records, file: Some(file), habits }
             }
         }
     }
@@ -333,8 +333,8 @@ impl Entry<'_> {
                     let found = contents.records.len();
                     self.notify.warn(&format!("loaded {found} values from read-only ambient file"));
                 }
-                let smoothing = Some(smoothing(&contents.header));
-                Ok(Opened { records: contents.records, file: None, smoothing })
+                let habits = Some(Habits::of(&contents.header));
+                Ok(Opened { records: contents.records, file: None, habits })
             }
         }
     }

@@ -1,8 +1,9 @@
 //! Neighbour clamping and classical spacing in a room with blocks: what is stored, whatever the number of threads.
 
 use super::room::Room;
-use crate::{Cache, Params, Record, Spacing, Systems};
-use ambit_base::DVec3;
+use crate::file::Habits;
+use crate::{Cache, Clamping, Params, Record, Spacing, Systems};
+use ambit_base::{DVec3, Rgb};
 
 fn filled(systems: Systems, threads: usize) -> Vec<Record> {
     let params = Params { bounces: 2, divisions: 64, super_samples: 0, accuracy: 0.4, systems, ..Params::default() };
@@ -27,7 +28,7 @@ fn excess(records: &[Record], level: u8, slope: f64) -> f64 {
 fn no_radius_exceeds_a_neighbours_by_more_than_the_distance() {
     for spacing in [Spacing::Hessian, Spacing::Classical] {
         let free = Systems { spacing, ..Systems::default() };
-        let clamped = filled(Systems { neighbour_clamping: true, ..free }, 1);
+        let clamped = filled(Systems { clamping: Clamping::All, ..free }, 1);
         assert!(clamped.iter().all(|r| r.is_plausible() && r.radii[1] <= 2.0 * r.radii[0] * 1.0001));
         let without = filled(free, 1);
         let [with, free] = [&clamped, &without].map(|records| excess(records, 0, 1.0));
@@ -42,10 +43,56 @@ fn no_radius_exceeds_a_neighbours_by_more_than_the_distance() {
 #[test]
 fn records_do_not_depend_on_threads() {
     for spacing in [Spacing::Hessian, Spacing::Classical] {
-        for neighbour_clamping in [false, true] {
-            let systems = Systems { neighbour_clamping, spacing, ..Systems::default() };
+        for clamping in [Clamping::Nobody, Clamping::Deeper, Clamping::All] {
+            let systems = Systems { clamping, spacing, ..Systems::default() };
             let one = filled(systems, 1);
             assert!(one.len() > 100 && one == filled(systems, 3), "{systems:?}");
         }
     }
+}
+
+fn wide_and_narrow() -> [Record; 2] {
+    let wide = Record {
+        position: DVec3::ZERO,
+        normal: DVec3::Z,
+        u: DVec3::X,
+        level: 1,
+        weight: 0.5,
+        radii: [4.0, 4.0],
+        gradient: [0.0; 2],
+        rotation: [0.0; 2],
+        corral: 0,
+        value: Rgb::ONE,
+        further: Box::default(),
+        late: Box::default(),
+    };
+    [wide.clone(), Record { position: DVec3::new(0.1, 0.0, 0.0), radii: [0.05, 0.05], ..wide }]
+}
+
+fn empty() -> Cache {
+    Cache::new(Params { bounces: 2, accuracy: 0.2, ..Params::default() }, DVec3::splat(-2.0), 4.0)
+}
+
+#[test]
+fn a_record_that_was_reined_in_is_known_again() {
+    let [wide, narrow] = wide_and_narrow();
+    let mut cache = empty();
+    assert_eq!(cache.load([wide.clone(), narrow.clone(), wide, narrow]), 2, "either is there already");
+}
+
+#[test]
+fn records_of_others_files_are_left_free() {
+    let radii = |habits: Option<Habits>| {
+        let mut cache = empty();
+        if let Some(habits) = habits {
+            cache.adopt(habits);
+        }
+        assert_eq!(cache.load(wide_and_narrow()), 0);
+        cache.records()[0].radii[0]
+    };
+    let held = radii(None);
+    // What 0.05 was before it was widened for its weight, and twice the distance.
+    assert!((f64::from(held) * 0.5f64.sqrt() - (0.05 * 0.5f64.sqrt() + 0.2)).abs() < 1e-6, "{held}");
+    assert_eq!(radii(Some(Habits { smoothing: 1.0, reined: true })), held);
+    assert_eq!(radii(Some(Habits { smoothing: 1.0, reined: false })), 4.0);
 }
