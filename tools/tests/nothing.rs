@@ -60,7 +60,7 @@ fn of_surfaces_that_are_never_hit_oconv_alone_tells() {
     let write = |name: &str, text: &str| std::fs::write(scratch.path().join(name), text).expect("a file is written");
     write(
         "odd.rad",
-        "void light g 0 0 3 1 2 3\ng polygon line 0 0 9 0 0 0 1 0 0 2 0 0\ng sphere dot 0 0 4 0 0 0 0\n\
+        "void light l 0 0 3 1 2 3\nl sphere lamp 0 0 4 0 0 7 .1\nvoid plastic g 0 0 5 .5 .5 .5 0 0\ng polygon line 0 0 9 0 0 0 1 0 0 2 0 0\ng sphere dot 0 0 4 0 0 0 0\n\
          g ring none 0 0 8 0 0 3 0 0 1 .5 .5\ng sphere inside 0 0 4 0 0 9 -1\n",
     );
     let done = Command::new(OCONV).arg("odd.rad").current_dir(scratch.path()).output().expect("oconv runs");
