@@ -1,9 +1,10 @@
 //! Neighbour clamping and classical spacing in a room with blocks: what is stored, whatever the number of threads.
 
+use super::interpolation::record;
 use super::room::Room;
 use crate::file::Habits;
 use crate::{Cache, Clamping, Params, Record, Spacing, Systems};
-use ambit_base::{DVec3, Rgb};
+use ambit_base::DVec3;
 
 fn filled(systems: Systems, threads: usize) -> Vec<Record> {
     let params = Params { bounces: 2, divisions: 64, super_samples: 0, accuracy: 0.4, systems, ..Params::default() };
@@ -52,20 +53,7 @@ fn records_do_not_depend_on_threads() {
 }
 
 fn wide_and_narrow() -> [Record; 2] {
-    let wide = Record {
-        position: DVec3::ZERO,
-        normal: DVec3::Z,
-        u: DVec3::X,
-        level: 1,
-        weight: 0.5,
-        radii: [4.0, 4.0],
-        gradient: [0.0; 2],
-        rotation: [0.0; 2],
-        corral: 0,
-        value: Rgb::ONE,
-        further: Box::default(),
-        late: Box::default(),
-    };
+    let wide = Record { level: 1, weight: 0.5, radii: [4.0, 4.0], ..record() };
     [wide.clone(), Record { position: DVec3::new(0.1, 0.0, 0.0), radii: [0.05, 0.05], ..wide }]
 }
 

@@ -32,7 +32,8 @@ fn limits() -> Limits {
     Limits::new(&Params { resolution: 64, ..Params::default() }, 4.0)
 }
 
-fn record() -> Record {
+/// A record at the origin that looks up.
+pub(super) fn record() -> Record {
     Record {
         position: DVec3::ZERO,
         normal: DVec3::Z,
