@@ -123,8 +123,11 @@ impl<'a> Scene<'a> {
                 ambit_base::Notify::warn(messages, &text);
             }
         }
+        if rendering.counts || rendering.statistics {
+            self.renderer.measure(crate::statistics::clock);
+        }
         if rendering.statistics {
-            self.renderer.measure(crate::statistics::clock, crate::statistics::own);
+            self.renderer.time_steps(crate::statistics::clock, crate::statistics::own);
         }
         self.session.begin_work();
         Ok(())

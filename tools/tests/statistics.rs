@@ -11,6 +11,7 @@ grey polygon wall 0 0 12 0 0 0 0 3 0 0 3 2.5 0 0 2.5
 lamp polygon light 0 0 12 1.5 1 2.4 1.5 2 2.4 2.5 2 2.4 2.5 1 2.4
 ";
 const LIGHT: &str = "-ab 2 -ad 64 -as 0 -aa .2 -ar 32 -af a.amb";
+const VIEW: &str = "-vp 2 1.5 2 -vd 0 .1 -1 -vh 60 -vv 60 -x 16 -y 16";
 
 fn run(folder: &tempfile::TempDir, program: &str, line: &str, input: &str) -> Output {
     let mut command = Command::new(program);
@@ -67,11 +68,18 @@ fn a_run_says_what_it_took() {
     assert_eq!(made, "0 records");
     assert_eq!(first(loaded), first(&lines[0]));
     forget();
-    let picture =
-        |more: &str| run(&folder, env!("CARGO_BIN_EXE_rpict"), &format!("{LIGHT} -x 16 -y 16 {more} s.oct"), "");
+    let picture = |more: &str| run(&folder, env!("CARGO_BIN_EXE_rpict"), &format!("{LIGHT} {VIEW} {more} s.oct"), "");
     assert_eq!(said(&picture("")).len(), 0);
+    assert_eq!(said(&picture("--stats")).len(), 5);
+    forget();
+    // Reports do not time every task: that would cost a tenth of the run.
     let reported = picture("-t 1000");
-    assert_eq!(said(&reported).len(), 5);
+    let lines = said(&reported);
+    assert_eq!(lines.len(), 4);
+    assert!(
+        first(&lines[0]) > 10 && first(&lines[2]) > 64 * 10 && lines[3].contains("interpolation error "),
+        "{lines:?}"
+    );
     // The last line says that the picture is done, as scripts expect.
     let text = String::from_utf8(reported.stderr).unwrap();
     assert!(text.lines().last().unwrap().contains(" rays, 100.00% after "), "{text}");

@@ -21,6 +21,8 @@ pub struct Rendering {
     pub measured_reuse: Option<bool>,
     /// `--stats`: say in the end what the calculation took.
     pub statistics: bool,
+    /// Say as much of that as costs hardly anything.
+    pub counts: bool,
     /// `--error`: the RMS error that settings are chosen for, relative to the mean, above 0 and up to 1; `None` takes the
     /// settings as they are.
     pub goal: Option<f64>,
@@ -71,6 +73,7 @@ impl Rendering {
             reuse: Some(Reuse::Auto),
             measured_reuse: None,
             statistics: false,
+            counts: false,
             goal: None,
             functions: Vec::new(),
             spectrum: Spectrum::default(),

@@ -33,14 +33,18 @@ pub struct Report {
     pub filling: Duration,
     /// Look-ups and what they came to.
     pub observed: Observed,
-    /// What the same would take on other numbers of cores.
+    /// What the same would take on other numbers of cores, if steps were timed.
     pub parallelism: Option<Parallelism>,
 }
 
 impl Renderer {
-    /// Counts look-ups and measures time from now on. `wall` and `own` are the time, and the processor time of the thread that asks.
-    pub fn measure(&mut self, wall: Clock, own: Clock) {
+    /// Counts look-ups and measures the time of hemispheres from now on, by the clock `wall`.
+    pub fn measure(&mut self, wall: Clock) {
         self.cache_mut().observe(wall);
+    }
+
+    /// Times every task from now on, by the processor time of the thread that asks, `own`: a tenth of the time itself.
+    pub fn time_steps(&mut self, wall: Clock, own: Clock) {
         self.cache_mut().time_steps(wall, own);
     }
 

@@ -68,9 +68,9 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     if !spectrum.shows_colour() {
         return Err(Failure::user("unsupported spectral sampling").into());
     }
-    // Reports end with statistics, where there is a cache.
+    // Reports end with what can be counted at no great cost, where there is a cache.
     let ambient = &options.rendering.options.ambient;
-    options.rendering.statistics |= options.report > 0 && ambient.bounces > 0;
+    options.rendering.counts = options.report > 0 && ambient.bounces > 0;
     if options.spacing > GREATEST_SPACING {
         let text = format!("pixel sampling reduced from {} to {GREATEST_SPACING}", options.spacing);
         session.messages.warn(&text);
