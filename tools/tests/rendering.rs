@@ -265,6 +265,20 @@ fn frames_that_exist_are_not_made_again() {
     assert_eq!(String::from_utf8_lossy(&again.stderr), warnings);
 }
 
+/// Programs that render a sequence together would meet here: one asks whether a picture exists, then another begins it.
+#[test]
+#[cfg(unix)]
+fn frames_that_others_begin_meanwhile_are_left_to_them() {
+    let bench = Bench::new();
+    // Not there for who asks, but for who opens it to write a new file.
+    std::os::unix::fs::symlink("nowhere", bench.path("f02.hdr")).unwrap();
+    let answer =
+        bench.rpict("-w -S 1 -x 20 -y 20 -o f%02d.hdr scene.oct", b"VIEW= -vh 50\nVIEW= -vh 60\nVIEW= -vh 70\n");
+    assert_eq!(String::from_utf8_lossy(&answer.stderr), "");
+    assert!(answer.status.success());
+    assert!(bench.path("f03.hdr").exists() && !bench.path("nowhere").exists());
+}
+
 #[test]
 fn errors_have_their_class_and_status() {
     let bench = Bench::new();

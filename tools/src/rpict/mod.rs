@@ -134,5 +134,5 @@ fn render(session: &Session, options: &PictureOptions, scene: &mut Scene<'_>) ->
         return sequence::run(&picture, scene, stdin().lock());
     }
     let frame = Frame::single(&picture)?;
-    picture.make(&frame, scene)
+    picture.make(&frame, scene).map(|_| ())
 }
