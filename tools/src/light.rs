@@ -113,7 +113,10 @@ impl<'a> Scene<'a> {
         let scene = self.fingerprint.take();
         let ambient = rendering.ambient_file.as_ref().zip(rendering.reuse).zip(scene);
         if let Some(((file, reuse), scene)) = ambient {
-            if rendering.options.ambient.accuracy > EPSILON {
+            let ambient = &rendering.options.ambient;
+            if ambient.bounces <= 0 && ambient.weight <= 0 {
+                // Nothing asks for records: a file without them would only be in the way of runs that do.
+            } else if ambient.accuracy > EPSILON {
                 let (header, owner) = (ambient_header(&self.session.program, rendering, name), owner());
                 let fingerprint = &scene.with(&rendering.options);
                 let store = Store { path: &path_of(file), header: &header, fingerprint, reuse, owner: &owner };

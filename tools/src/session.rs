@@ -3,7 +3,7 @@
 use crate::threads::start_threads;
 use ambit_cli::{
     About, Common, ConsoleMessages, Failure, Features, Outside, Process, Progress, Row, Scan, Signals, VERSION, answer,
-    attach_error_file, completions, defaults, long_help, man_page, scan,
+    attach_error_file, broken_pipes_end, completions, defaults, long_help, man_page, scan,
 };
 use ambit_file::{
     Library, SearchPath, Zone, base_name, bytes_of, capture_lines, command_line, text_of, variable, word_of,
@@ -35,7 +35,7 @@ impl From<Failure> for Stop {
 impl Stop {
     /// An error of writing; `what` as in `write error`.
     pub(crate) fn writing(what: &str, error: &io::Error) -> Self {
-        if error.kind() == io::ErrorKind::BrokenPipe {
+        if error.kind() == io::ErrorKind::BrokenPipe && broken_pipes_end() {
             Self::BrokenPipe
         } else {
             Self::Failure(Failure::system(what, error))

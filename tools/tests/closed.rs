@@ -94,6 +94,13 @@ fn pipes_that_nobody_reads_end_programs() {
     for (line, status, words) in [
         ("yes '0 0 5 0 0 -1' | $rtrace -w -h s.oct", 3, "rtrace: signal - Broken pipe\n"),
         ("$rpict -w -x 8 -y 8 s.oct", 3, "rpict: signal - Broken pipe\n"),
+        (
+            "trap '' PIPE; yes '0 0 5 0 0 -1' 2> /dev/null | $rtrace -w -h s.oct",
+            2,
+            "rtrace: system - write error: Broken pipe\n",
+        ),
+        ("trap '' PIPE; $rpict -w -x 8 -y 8 s.oct", 2, "rpict: system - error writing picture header: Broken pipe\n"),
+        ("trap '' PIPE; $oconv -f s.rad", 2, "oconv: system - output error in writeoct: Broken pipe\n"),
         ("$oconv -f s.rad", 141, ""),
         ("$rtrace -defaults", 141, ""),
         ("$rpict -version", 141, ""),

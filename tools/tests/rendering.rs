@@ -197,8 +197,12 @@ fn trees_have_no_number_of_components() {
 fn ambient_files_name_the_program_that_made_them() {
     let bench = Bench::new();
     for (answer, file, line) in [
-        (bench.rtrace("-w -af one.amb scene.oct", b""), "one.amb", "#?RADIANCE\nrtrace -av 0 0 0 -aw 0 -ab 0 "),
-        (bench.rpict("-w -x 4 -af two.amb scene.oct", b""), "two.amb", "#?RADIANCE\nrpict -av 0 0 0 -aw 0 -ab 0 "),
+        (bench.rtrace("-w -ab 1 -af one.amb scene.oct", b""), "one.amb", "#?RADIANCE\nrtrace -av 0 0 0 -aw 0 -ab 1 "),
+        (
+            bench.rpict("-w -x 4 -ab 1 -af two.amb scene.oct", b""),
+            "two.amb",
+            "#?RADIANCE\nrpict -av 0 0 0 -aw 0 -ab 1 ",
+        ),
     ] {
         assert!(answer.status.success());
         assert!(std::fs::read(bench.path(file)).unwrap().starts_with(line.as_bytes()), "{file}");
@@ -265,6 +269,20 @@ fn frames_that_exist_are_not_made_again() {
     assert_eq!(String::from_utf8_lossy(&again.stderr), warnings);
 }
 
+/// Programs that render a sequence together would meet here: one asks whether a picture exists, then another begins it.
+#[test]
+#[cfg(unix)]
+fn frames_that_others_begin_meanwhile_are_left_to_them() {
+    let bench = Bench::new();
+    // Not there for who asks, but for who opens it to write a new file.
+    std::os::unix::fs::symlink("nowhere", bench.path("f02.hdr")).unwrap();
+    let answer =
+        bench.rpict("-w -S 1 -x 20 -y 20 -o f%02d.hdr scene.oct", b"VIEW= -vh 50\nVIEW= -vh 60\nVIEW= -vh 70\n");
+    assert_eq!(String::from_utf8_lossy(&answer.stderr), "");
+    assert!(answer.status.success());
+    assert!(bench.path("f03.hdr").exists() && !bench.path("nowhere").exists());
+}
+
 #[test]
 fn errors_have_their_class_and_status() {
     let bench = Bench::new();
@@ -303,6 +321,8 @@ fn errors_have_their_class_and_status() {
         ("-vtz scene.oct", "rpict: fatal - unknown view type 'z' (expected one of: v, l, c, h, a, s)"),
         ("-PP file scene.oct", "rpict: fatal - persist option only for sequences"),
         ("-S 1 -r old.hdr -P file scene.oct", "rpict: fatal - persist option used with recover file"),
+        ("-S 1 -PP file", "rpict: fatal - persist mode (-P, -PP) without an octree is not supported"),
+        ("-S 1", "rpict: fatal - missing octree argument"),
     ] {
         assert_eq!(first(&bench.rpict(line, b"")), text);
     }

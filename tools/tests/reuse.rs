@@ -134,6 +134,23 @@ fn what_changed_is_named() {
     assert!(after.starts_with(&before));
 }
 
+/// `rad` and files of options name an ambient file in runs without interreflection, too, before or after others.
+#[test]
+fn runs_without_interreflection_leave_files_alone() {
+    let bench = Bench::new();
+    let unlit = "rtrace: warning - no light sources found\n";
+    assert_eq!(bench.warnings("-ab 0", "s"), unlit);
+    assert_eq!(bench.files(), 0);
+    assert_eq!(bench.warnings("", "s"), "");
+    let kept = fs::read(bench.path("a.amb")).unwrap();
+    assert!(kept.len() > 2000);
+    assert_eq!(bench.warnings("-ab 0", "s"), unlit);
+    assert_eq!(bench.files(), 1);
+    assert!(fs::read(bench.path("a.amb")).unwrap() == kept);
+    // What is averaged with records asks for them.
+    assert!(bench.warnings("-ab 0 -aw 4", "s").contains("does not fit: other -ab (2 there, 0 here), -aw"));
+}
+
 #[test]
 fn relays_of_light_count_only_where_there_are_mirrors() {
     let bench = Bench::new();

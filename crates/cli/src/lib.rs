@@ -42,7 +42,7 @@ pub use scan::{Arguments, Scan, scan};
 pub use signals::{Caught, Signals};
 pub use spec::{Field, OutputSpec, TreeSpec};
 pub use spectrum::Spectrum;
-pub use standard::{StandardOutput, answer};
+pub use standard::{StandardOutput, answer, broken_pipes_end};
 pub use table::{Label, Place, Row};
 
 /// What `-version` prints and what headers record as the software: the version of Radiance whose files and options

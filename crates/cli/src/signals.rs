@@ -1,5 +1,6 @@
 //! Signals: most end the program with status 3, after a message and with its files whole; SIGCONT asks for a report.
 
+use crate::standard::starts_ignoring;
 use signal_hook::consts::{SIGALRM, SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGXCPU, SIGXFSZ};
 use signal_hook::iterator::Signals as Stream;
 use std::io;
@@ -51,9 +52,8 @@ impl Signals {
     /// # Errors
     /// If the system refuses to hand out signals.
     pub fn watch(on_end: impl Fn(Caught) + Send + 'static, on_report: impl Fn() + Send + 'static) -> io::Result<Self> {
-        let ignored = ignored_signals();
         let wanted = [SIGINT, SIGHUP, SIGTERM, SIGALRM, SIGXCPU, SIGXFSZ, SIGCONT];
-        let mut stream = Stream::new(wanted.into_iter().filter(|s| ignored & (1 << (s - 1)) == 0))?;
+        let mut stream = Stream::new(wanted.into_iter().filter(|&s| !starts_ignoring(s)))?;
         let ended = Arc::new(AtomicBool::new(false));
         let working = Arc::new(AtomicBool::new(false));
         let (done, busy) = (Arc::clone(&ended), Arc::clone(&working));
@@ -89,11 +89,4 @@ impl Signals {
     pub fn finish(&self) {
         self.ended.store(true, Ordering::Release);
     }
-}
-
-/// The mask of the signals that were ignored when the program started, where `/proc` tells.
-fn ignored_signals() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap_or("0");
-    u64::from_str_radix(mask.trim(), 16).unwrap_or(0)
 }

@@ -1,20 +1,49 @@
 //! Standard output that tells when nothing can be written. Rust's own opens `/dev/null` in the place of one that is
-//! closed, before a program begins, and a run's results would go there without a word.
+//! closed, before a program begins, and a run's results would go there without a word. And it ignores SIGPIPE, so that
+//! nobody could tell any more whether the parent did.
 
 use rustix::io::Errno;
+use signal_hook::consts::SIGPIPE;
 use std::fs::File;
 use std::io::{self, Write};
 use std::os::fd::AsFd;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// True if standard output was closed when the process began.
 static CLOSED: AtomicBool = AtomicBool::new(false);
+
+/// The signals that were ignored then.
+static IGNORED: AtomicU64 = AtomicU64::new(0);
 
 /// Runs before Rust's start, and does nothing but ask the system.
 #[ctor::ctor(unsafe)]
 fn look() {
     let open = rustix::io::fcntl_getfd(rustix::stdio::stdout());
     CLOSED.store(open.is_err(), Ordering::Relaxed);
+    IGNORED.store(ignored_mask().unwrap_or(0), Ordering::Relaxed);
+}
+
+/// The mask of ignored signals, where `/proc` tells. It asks the system alone: no memory is allocated yet.
+fn ignored_mask() -> Option<u64> {
+    use rustix::fs::{Mode, OFlags, open};
+    let file = open("/proc/self/status", OFlags::RDONLY | OFlags::CLOEXEC, Mode::empty()).ok()?;
+    // More than the file has, which ends where this mask has long been told.
+    let mut bytes = [0; 4096];
+    let length = rustix::io::read(&file, &mut bytes).ok()?;
+    let mut lines = bytes[..length].split(|&b| b == b'\n');
+    let mask = lines.find_map(|line| line.strip_prefix(b"SigIgn:"))?;
+    u64::from_str_radix(std::str::from_utf8(mask).ok()?.trim(), 16).ok()
+}
+
+/// True if the parent had this signal ignored when the process began.
+pub(crate) fn starts_ignoring(signal: i32) -> bool {
+    IGNORED.load(Ordering::Relaxed) & (1 << (signal - 1)) != 0
+}
+
+/// True if a pipe that nobody reads ends programs, false if the parent had that signal ignored: then it is an error like
+/// others.
+pub fn broken_pipes_end() -> bool {
+    !starts_ignoring(SIGPIPE)
 }
 
 /// Standard output, without a buffer.
@@ -34,9 +63,9 @@ impl StandardOutput {
     }
 
     /// The same, but when it is a pipe that nobody reads any more, the program ends without a word, as by a signal that
-    /// it does not handle.
+    /// it does not handle; unless [`broken_pipes_end`] says otherwise.
     pub fn ending() -> Self {
-        Self { ends: true, ..Self::new() }
+        Self { ends: broken_pipes_end(), ..Self::new() }
     }
 }
 
@@ -55,7 +84,7 @@ impl Write for StandardOutput {
         };
         if self.ends && written.as_ref().is_err_and(|e| e.kind() == io::ErrorKind::BrokenPipe) {
             // It comes back only if the system refuses.
-            let _ = signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGPIPE);
+            let _ = signal_hook::low_level::emulate_default_handler(SIGPIPE);
         }
         written
     }

@@ -38,6 +38,8 @@ pub(crate) struct Frame {
     pub(crate) pixel_aspect: f64,
     /// Output file; none for standard output.
     pub(crate) output: Option<String>,
+    /// Left to others, if its output file is there: several processes divide a sequence.
+    pub(crate) shared: bool,
     /// File of distances.
     pub(crate) distances: Option<String>,
     /// What is there already.
@@ -64,6 +66,7 @@ impl Frame {
             height: fit.height,
             pixel_aspect: fit.pixel_aspect,
             output: None,
+            shared: false,
             distances: None,
             recovered: None,
             first: true,
@@ -99,8 +102,8 @@ impl Frame {
 }
 
 impl Picture<'_> {
-    /// Makes a picture.
-    pub(crate) fn make(&self, frame: &Frame, scene: &mut Scene<'_>) -> Result<(), Stop> {
+    /// Makes a picture; false if it is left to others.
+    pub(crate) fn make(&self, frame: &Frame, scene: &mut Scene<'_>) -> Result<bool, Stop> {
         let options = self.options;
         self.session.meter.set_percent(0.0);
         let (width, height) = (frame.width, frame.height);
@@ -109,7 +112,7 @@ impl Picture<'_> {
             return Err(Failure::unsupported(&what).into());
         }
         let done = frame.recovered.as_ref().map_or(0, |r| r.lines.len() as u32);
-        let mut output = PictureOutput::open(frame.output.as_deref(), frame.distances.as_deref(), done, width)?;
+        let Some(mut output) = PictureOutput::open(frame, done)? else { return Ok(false) };
         let mut head = Vec::new();
         // Writing to memory does not fail.
         let _ = self.header(frame, &scene.header, frame.first).write(&mut head);
@@ -124,7 +127,7 @@ impl Picture<'_> {
         }
         if empty {
             self.session.messages.warn("empty output picture");
-            return Ok(());
+            return Ok(true);
         }
         if let Some(number) = frame.number.filter(|_| options.report > 0) {
             use std::io::Write;
@@ -138,7 +141,7 @@ impl Picture<'_> {
             scene.tell();
         }
         watch.finish();
-        Ok(())
+        Ok(true)
     }
 
     /// Computes the lowest `rows` rows.

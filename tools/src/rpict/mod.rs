@@ -87,6 +87,9 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         if options.recover.is_some() {
             return Err(Failure::user("persist option used with recover file").into());
         }
+        if session.octree.is_none() {
+            session.prepare(&options.common)?;
+        }
     }
     if options.sequence > 0 {
         if session.octree.is_none() {
@@ -134,5 +137,5 @@ fn render(session: &Session, options: &PictureOptions, scene: &mut Scene<'_>) ->
         return sequence::run(&picture, scene, stdin().lock());
     }
     let frame = Frame::single(&picture)?;
-    picture.make(&frame, scene)
+    picture.make(&frame, scene).map(|_| ())
 }

@@ -1,5 +1,6 @@
 //! Where pictures and distances go.
 
+use super::frame::Frame;
 use crate::session::Stop;
 use ambit_base::Rgb;
 use ambit_cli::{Failure, StandardOutput};
@@ -16,28 +17,31 @@ pub(crate) struct PictureOutput {
 /// The longest scanline that is run-length encoded is part of the encoding; longer and shorter ones are written flat by
 /// [`encode_scanline`] itself.
 impl PictureOutput {
-    /// Opens the outputs. A picture's file must be new; a file of distances is written over, from row `done` on.
-    pub(crate) fn open(picture: Option<&str>, distances: Option<&str>, done: u32, width: u32) -> Result<Self, Failure> {
-        let stream: Box<dyn Write> = match picture {
+    /// Opens the outputs of a frame whose `done` upper rows are there. A picture's file must be new: if it is not, and
+    /// others may make it (`Frame::shared`), there is nothing to open. A file of distances is written over.
+    pub(crate) fn open(frame: &Frame, done: u32) -> Result<Option<Self>, Failure> {
+        let stream: Box<dyn Write> = match &frame.output {
             None => Box::new(StandardOutput::new()),
-            Some(name) => {
-                let file = OpenOptions::new().write(true).create_new(true).open(path_of(name));
-                Box::new(file.map_err(|e| Failure::system(format!("cannot open output file \"{name}\""), &e))?)
-            }
+            Some(name) => match OpenOptions::new().write(true).create_new(true).open(path_of(name)) {
+                Ok(file) => Box::new(file),
+                // Opening it tells at once whose it is: between asking whether it exists and opening it, others would.
+                Err(e) if frame.shared && e.kind() == io::ErrorKind::AlreadyExists => return Ok(None),
+                Err(e) => return Err(Failure::system(format!("cannot open output file \"{name}\""), &e)),
+            },
         };
-        let distances = match distances {
+        let distances = match &frame.distances {
             None => None,
             Some(name) => {
                 let failed = |e: io::Error| Failure::system(format!("cannot open z-file \"{name}\""), &e);
                 // An old, longer file keeps its tail, as Radiance's does.
                 let mut file =
                     OpenOptions::new().write(true).create(true).truncate(false).open(path_of(name)).map_err(failed)?;
-                let offset = u64::from(done) * u64::from(width) * size_of::<f32>() as u64;
+                let offset = u64::from(done) * u64::from(frame.width) * size_of::<f32>() as u64;
                 file.seek(SeekFrom::Start(offset)).map_err(failed)?;
                 Some(file)
             }
         };
-        Ok(Self { picture: stream, distances })
+        Ok(Some(Self { picture: stream, distances }))
     }
 
     /// Writes the header and what follows it.

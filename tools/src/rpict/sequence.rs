@@ -6,7 +6,7 @@ use crate::light::Scene;
 use crate::session::Stop;
 use ambit_base::Notify;
 use ambit_cli::{Failure, PictureOptions};
-use ambit_file::{View, integer, is_view_line, path_of};
+use ambit_file::{View, integer, is_view_line};
 use std::io::{BufRead, Read};
 
 /// Longest line of views, in bytes; what follows counts as a line of its own.
@@ -43,11 +43,11 @@ pub(crate) fn run(picture: &Picture<'_>, scene: &mut Scene<'_>, mut views: impl 
     while next_view(&mut views, &mut view, &picture.session.program)? {
         let projection = set_up(&view)?;
         let skipped = recovering.is_some_and(|k| number < k);
-        if !skipped && let Some(mut frame) = plan(picture, projection, number, recovering == Some(number))? {
+        if !skipped {
+            let mut frame = plan(picture, projection, number, recovering == Some(number))?;
             frame.previous = previous.filter(|_| options.motion > 0.0);
             frame.first = !made || frame.output.is_some();
-            picture.make(&frame, scene)?;
-            made = true;
+            made |= picture.make(&frame, scene)?;
         }
         previous = Some(projection);
         number += 1;
@@ -61,13 +61,8 @@ pub(crate) fn run(picture: &Picture<'_>, scene: &mut Scene<'_>, mut views: impl 
     Ok(())
 }
 
-/// The frame of a view; `None` if its picture exists already.
-fn plan(
-    picture: &Picture<'_>,
-    view: ambit_file::Projection,
-    number: i32,
-    recovers: bool,
-) -> Result<Option<Frame>, Stop> {
+/// The frame of a view.
+fn plan(picture: &Picture<'_>, view: ambit_file::Projection, number: i32, recovers: bool) -> Result<Frame, Stop> {
     let options = picture.options;
     let mut frame = Frame::new(view, options);
     frame.number = Some(number);
@@ -77,12 +72,12 @@ fn plan(
         if recovers {
             let aside = recover::set_aside(picture.session, &name, Some(&name))?;
             frame.take_over(aside.and_then(|path| recover::read(picture.session, path, picture.space)));
-        } else if name != *pattern && path_of(&name).exists() {
-            return Ok(None);
+        } else {
+            frame.shared = name != *pattern;
         }
         frame.output = Some(name);
     }
-    Ok(Some(frame))
+    Ok(frame)
 }
 
 /// Applies the next line that changes the view; false at the end.
