@@ -1,5 +1,6 @@
 //! antimatter: volumes in which listed modifiers are invisible.
 
+use crate::materials::Finish;
 use crate::observer::Observer;
 use crate::ray::{ClipSet, Kinds, Ray};
 use crate::walk::Walk;
@@ -53,7 +54,7 @@ impl ClipSets {
 }
 
 impl<O: Observer> Walk<'_, O> {
-    pub(crate) fn antimatter(&mut self, ray: &mut Ray<'_>, m: &Antimatter) -> bool {
+    pub(crate) fn antimatter(&mut self, ray: &mut Ray<'_>, m: &Antimatter, bare: &Finish) -> bool {
         let front = ray.cosine() > 0.0;
         ray.next_clipped = self.tracer.scene.clip_sets.changed(ray.clipped, &m.listed, front);
         if m.first == VOID || inside(ray, m) <= 0 {
@@ -64,7 +65,7 @@ impl<O: Observer> Walk<'_, O> {
             hit.normal = -hit.normal;
             hit.cosine = -hit.cosine;
         }
-        self.shade_as(ray, m.first)
+        self.shade_with(ray, m.first, *bare)
     }
 }
 

@@ -308,7 +308,7 @@ impl<O: Observer> Walk<'_, O> {
                 ray.point = ray.origin + ray.direction * SENSOR_DISTANCE;
                 ray.hit = Some(sensor(SENSOR_DISTANCE, direction));
                 ray.unmirrored_length = SENSOR_DISTANCE;
-                self.lambertian(&mut ray);
+                self.lambertian(&mut ray, DVec3::ZERO);
             }
             Aim::Radiance => self.evaluate(&mut ray),
             Aim::Geometry => self.locate(&mut ray),

@@ -17,12 +17,6 @@ impl<O: Observer> Walk<'_, O> {
         self.shade_with(ray, modifier, Finish { pattern: Rgb::ONE, tilt })
     }
 
-    /// Shades with another modifier in place of the surface's own; [`VOID`] lets the ray pass.
-    pub(crate) fn shade_as(&mut self, ray: &mut Ray<'_>, modifier: ObjectId) -> bool {
-        let tilt = ray.hit.as_ref().map_or(DVec3::ZERO, |h| h.tilt);
-        self.shade_with(ray, modifier, Finish { pattern: Rgb::ONE, tilt })
-    }
-
     /// Walks the chain from `id` with what has been gathered already.
     pub(crate) fn shade_with(&mut self, ray: &mut Ray<'_>, mut id: ObjectId, mut finish: Finish) -> bool {
         let scene = self.tracer.scene;
@@ -31,6 +25,10 @@ impl<O: Observer> Walk<'_, O> {
             match node {
                 Node::Material(material) => {
                     let bare = finish;
+                    if bare.tilt != DVec3::ZERO {
+                        // What materials tell that turn no normal to the viewer.
+                        ray.normal = Facing::of(ray, bare.tilt, false).normal;
+                    }
                     if next != VOID && !self.gather(ray, next, &mut finish) {
                         return true;
                     }
@@ -76,7 +74,12 @@ impl<O: Observer> Walk<'_, O> {
                 }
                 Node::Pattern(pattern) => self.apply_pattern(ray, pattern, finish),
                 Node::Texture(texture) => self.apply_texture(ray, texture, finish),
-                Node::Transparent => {}
+                // Radiance applies what has another name twice, with all above it.
+                Node::Transparent => {
+                    if !self.gather(ray, next, finish) {
+                        return false;
+                    }
+                }
                 Node::Unusable(error) => {
                     self.fail(error.clone());
                     return false;

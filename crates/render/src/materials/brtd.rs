@@ -66,7 +66,8 @@ impl<O: Observer> Walk<'_, O> {
             return true;
         }
         let facing = Facing::of(ray, finish.tilt, true);
-        ray.normal = facing.normal;
+        // Told from behind: the normal as it is, tilted the other way.
+        ray.normal = if ray.cosine() > 0.0 { facing.normal } else { Facing::of(ray, -finish.tilt, false).normal };
         let functions = &m.functions;
         let channels = self.material_channels(ray, functions, &facing, finish.pattern);
         let ideal = self.expressions::<6>(&channels, functions, 0).unwrap_or_default().map(|v| v as f32);
@@ -74,14 +75,16 @@ impl<O: Observer> Walk<'_, O> {
         let through = Rgb::new(ideal[3], ideal[4], ideal[5]);
         let straight = !facing.textured || ray.is_shadow() || ray.is_ambient();
         if m.transmits && through.max_element() > EPSILON as f32 {
-            let direction = self.through_direction(ray, &facing);
-            self.pass(ray, direction, through, straight);
+            // Neither this nor the reflection asks which side the tilted ray ends on.
+            let d = ray.direction;
+            let bent = if straight || self.is_phong(ray) { d } else { (d - facing.tilt).normalize_or(d) };
+            self.pass(ray, bent, through, straight);
         }
         if ray.is_shadow() {
             return true;
         }
         if mirror.max_element() > EPSILON as f32 {
-            self.reflect(ray, &facing, mirror, straight);
+            self.reflect(ray, facing.mirrored(ray.direction), mirror, straight);
         }
         let near = if ray.cosine() > 0.0 { m.front } else { m.back } * finish.pattern;
         let far = m.transmitted * finish.pattern;

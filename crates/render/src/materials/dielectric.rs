@@ -1,6 +1,6 @@
 //! dielectric and interface: refraction and reflection at the boundary of solids, with absorption along the way.
 
-use super::{Facing, Finish};
+use super::{Facing, Finish, mirror_direction};
 use crate::observer::Observer;
 use crate::ray::{Interior, Kinds, Ray};
 use crate::walk::Walk;
@@ -66,8 +66,7 @@ impl<O: Observer> Walk<'_, O> {
             if let Some(mut child) = self.child(ray, Kinds::REFRACTED, d, k, 3) {
                 let mut direction = d * eta + facing.normal * (eta * c - c2);
                 if facing.textured && direction.dot(facing.geometric) >= -EPSILON {
-                    let c = -d.dot(facing.geometric);
-                    let c2 = (1.0 - eta * eta * (1.0 - c * c)).max(0.0).sqrt();
+                    // Still with the angles at the tilted normal, as in Radiance.
                     direction = d * eta + facing.geometric * (eta * c - c2);
                 }
                 child.direction = direction.normalize();
@@ -86,7 +85,7 @@ impl<O: Observer> Walk<'_, O> {
             return true;
         }
         let straight = !facing.textured || ray.is_ambient();
-        self.reflect(ray, &facing, Rgb::splat(reflected as f32), straight);
+        self.reflect(ray, mirror_direction(d, &facing), Rgb::splat(reflected as f32), straight);
         true
     }
 }

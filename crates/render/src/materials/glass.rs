@@ -77,14 +77,14 @@ impl<O: Observer> Walk<'_, O> {
         if ray.is_shadow() {
             return true;
         }
-        self.reflect(ray, &facing, r, straight);
+        self.reflect(ray, facing.mirrored(ray.direction), r, straight);
         true
     }
 }
 
-/// The direction of a ray that a pane of varying thickness deflects: d + 2(1 − n)p, if that still crosses it.
+/// The direction of a ray that a pane of varying thickness deflects: d + 2(1 − n)p. As in Radiance nothing asks which
+/// side of the pane it ends on, or the reflected one.
 fn refracted(ray: &Ray<'_>, m: &Glass, facing: &Facing) -> DVec3 {
     let d = ray.direction;
-    let bent = (d + facing.tilt * (2.0 * (1.0 - m.index))).normalize_or(d);
-    if bent.dot(facing.geometric) < 0.0 { bent } else { d }
+    (d + facing.tilt * (2.0 * (1.0 - m.index))).normalize_or(d)
 }

@@ -1,7 +1,7 @@
 //! What ideal surfaces do with a ray: one child that is reflected, or one that passes, and what that makes of the
 //! lengths of the path. Also the test whether a hit from behind counts.
 
-use super::{Facing, mirror_direction};
+use super::Facing;
 use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
@@ -22,10 +22,9 @@ impl<O: Observer> Walk<'_, O> {
         Some(facing)
     }
 
-    /// Follows the mirror direction and adds what comes from there as the ray's mirrored light. Its length goes on beyond
-    /// the surface only if that is flat and `straight`.
-    pub(super) fn reflect(&mut self, ray: &mut Ray<'_>, facing: &Facing, coefficient: Rgb, straight: bool) {
-        let direction = mirror_direction(ray.direction, facing);
+    /// Follows `direction`, the mirrored one, and adds what comes from there as the ray's mirrored light. Its length goes on
+    /// beyond the surface only if that is flat and `straight`.
+    pub(super) fn reflect(&mut self, ray: &mut Ray<'_>, direction: DVec3, coefficient: Rgb, straight: bool) {
         let Some(mut child) = self.child(ray, Kinds::REFLECTED, direction, coefficient, REFLECTED) else { return };
         self.evaluate(&mut child);
         let light = child.coefficient * child.value;

@@ -1,7 +1,7 @@
 //! light, illum, glow and spotlight: what a ray that meets an emitter sees.
 
-use super::Finish;
 use super::mirror::Alternate;
+use super::{Facing, Finish};
 use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::sources::Spot;
@@ -39,7 +39,7 @@ impl Light {
 }
 
 impl<O: Observer> Walk<'_, O> {
-    pub(crate) fn light(&mut self, ray: &mut Ray<'_>, m: &Light, finish: Finish) -> bool {
+    pub(crate) fn light(&mut self, ray: &mut Ray<'_>, m: &Light, finish: Finish, bare: &Finish) -> bool {
         let front = ray.cosine() > 0.0;
         let indirect = ray.lineage.meets(Kinds::INDIRECT) && !ray.is_shadow();
         if indirect && front && !m.glows_from(ray.distance) {
@@ -62,7 +62,7 @@ impl<O: Observer> Walk<'_, O> {
                 Some(Alternate::Modifier(id)) => id,
                 _ => VOID,
             };
-            return self.shade_as(ray, id);
+            return self.shade_with(ray, id, *bare);
         }
         let far_glow = m.kind == Kind::Glow && m.radius >= 0.0 && ray.travelled + ray.distance > m.radius;
         if !self.tracer.options.direct.visible && !ray.is_shadow() && !far_glow {
@@ -71,7 +71,7 @@ impl<O: Observer> Walk<'_, O> {
         if !front {
             return self.tracer.options.back_visible;
         }
-        ray.normal = ray.hit.as_ref().map_or(-ray.direction, |h| h.normal);
+        ray.normal = ray.hit.as_ref().map_or(-ray.direction, |_| Facing::of(ray, finish.tilt, false).normal);
         if let Some(spot) = &m.spot
             && -spot.aim.dot(ray.direction) < spot.cosine
         {

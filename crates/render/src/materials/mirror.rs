@@ -25,7 +25,7 @@ pub(crate) enum Alternate {
 }
 
 impl<O: Observer> Walk<'_, O> {
-    pub(crate) fn mirror(&mut self, ray: &mut Ray<'_>, m: &Mirror, finish: Finish) -> bool {
+    pub(crate) fn mirror(&mut self, ray: &mut Ray<'_>, m: &Mirror, finish: Finish, bare: &Finish) -> bool {
         let relayed = self.relays_target(ray);
         if let (Some(alternate), None) = (m.alternate, relayed) {
             let id = match alternate {
@@ -33,10 +33,10 @@ impl<O: Observer> Walk<'_, O> {
                 Alternate::Modifier(id) => id,
             };
             if ray.cosine() < 0.0 || !ray.lineage.meets(Kinds::INDIRECT) {
-                return self.shade_as(ray, id);
+                return self.shade_with(ray, id, *bare);
             }
             if self.tracer.scene.modifiers.opacity(id) == Opacity::Transparent {
-                return self.shade_as(ray, id);
+                return self.shade_with(ray, id, *bare);
             }
         } else if ray.target.is_some() && relayed.is_none() {
             return true;

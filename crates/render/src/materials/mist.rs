@@ -1,6 +1,6 @@
 //! mist: the boundary of a volume that absorbs and scatters. What happens along the way is the walk's affair.
 
-use super::Finish;
+use super::{Facing, Finish};
 use crate::Error;
 use crate::observer::Observer;
 use crate::ray::{Kinds, Ray, SourceSet};
@@ -43,7 +43,7 @@ impl Mist {
 
 impl<O: Observer> Walk<'_, O> {
     pub(crate) fn mist(&mut self, ray: &mut Ray<'_>, m: &Mist, finish: Finish) -> bool {
-        ray.normal = ray.hit.as_ref().map_or(-ray.direction, |h| h.normal);
+        ray.normal = Facing::of(ray, finish.tilt, false).normal;
         let extinction = m.extinction * finish.pattern;
         let mut beyond = ray.interior;
         if ray.cosine() > 0.0 {

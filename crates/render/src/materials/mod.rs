@@ -126,10 +126,11 @@ impl<O: Observer> Walk<'_, O> {
     /// material's own modifiers.
     pub(crate) fn material(&mut self, ray: &mut Ray<'_>, material: &Material, finish: Finish, bare: &Finish) -> bool {
         if self.tracer.options.irradiance && ray.lineage.within(Kinds::STRAIGHT) && !material.keeps_meaning() {
-            if material.opacity() == Opacity::Transparent || material.is_proxy() {
+            let hidden = ray.cosine() < 0.0 && !self.tracer.options.back_visible;
+            if hidden || material.opacity() == Opacity::Transparent || material.is_proxy() {
                 return false;
             }
-            self.lambertian(ray);
+            self.lambertian(ray, bare.tilt);
             return true;
         }
         match material {
@@ -143,9 +144,9 @@ impl<O: Observer> Walk<'_, O> {
             Material::Mist(m) => self.mist(ray, m, finish),
             Material::Glass(m) => self.glass(ray, m, finish),
             Material::Dielectric(m) => self.dielectric(ray, m, finish),
-            Material::Mirror(m) => self.mirror(ray, m, finish),
-            Material::Light(m) => self.light(ray, m, finish),
-            Material::Antimatter(m) => self.antimatter(ray, m),
+            Material::Mirror(m) => self.mirror(ray, m, finish, bare),
+            Material::Light(m) => self.light(ray, m, finish, bare),
+            Material::Antimatter(m) => self.antimatter(ray, m, bare),
             Material::Bsdf(m) => self.bsdf(ray, m, finish),
         }
     }
@@ -191,9 +192,16 @@ impl Facing {
     }
 }
 
+impl Facing {
+    /// d + 2 C N, on whichever side of the surface that may be.
+    pub(crate) fn mirrored(&self, d: DVec3) -> DVec3 {
+        d + self.normal * (2.0 * self.cosine)
+    }
+}
+
 /// d + 2 C N, about the geometric normal instead where the result would enter the surface.
 pub(crate) fn mirror_direction(d: DVec3, facing: &Facing) -> DVec3 {
-    let r = d + facing.normal * (2.0 * facing.cosine);
+    let r = facing.mirrored(d);
     if facing.textured && r.dot(facing.geometric) <= EPSILON {
         d - facing.geometric * (2.0 * d.dot(facing.geometric))
     } else {

@@ -2,7 +2,7 @@
 //! surface. Also the Lambertian stand-in that measures irradiance.
 
 use super::rough::Facets;
-use super::{Facing, Finish};
+use super::{Facing, Finish, mirror_direction};
 use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
@@ -130,7 +130,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         if split.smooth && split.reflected > EPSILON {
             let straight = !facing.textured && ray.is_ambient();
-            self.reflect(ray, &facing, split.mirror, straight);
+            self.reflect(ray, mirror_direction(ray.direction, &facing), split.mirror, straight);
         }
         if split.smooth && split.diffuse <= EPSILON && split.through_diffuse <= EPSILON {
             return true;
@@ -204,9 +204,10 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
-    /// Shades a hit as a white Lambertian surface whose radiance equals its irradiance.
-    pub(crate) fn lambertian(&mut self, ray: &mut Ray<'_>) {
-        let facing = Facing::of(ray, DVec3::ZERO, true);
+    /// Shades a hit as a white Lambertian surface whose radiance equals its irradiance, tilted by what lies between the
+    /// surface and its material.
+    pub(crate) fn lambertian(&mut self, ray: &mut Ray<'_>, tilt: DVec3) {
+        let facing = Facing::of(ray, tilt, true);
         ray.normal = facing.normal;
         let white = Rgb::splat(std::f32::consts::PI);
         self.ambient(ray, white, facing.normal);

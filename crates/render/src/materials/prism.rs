@@ -63,7 +63,6 @@ fn split([k, x, y, z]: [f64; BRANCH]) -> Option<(f64, DVec3)> {
 
 impl<O: Observer> Walk<'_, O> {
     pub(crate) fn prism(&mut self, ray: &mut Ray<'_>, m: &Prism) -> bool {
-        ray.normal = ray.facing_normal();
         let image = self.relaying(ray);
         if ray.target.is_some() && image.is_none() {
             return true;

@@ -3,7 +3,7 @@
 
 use super::normal::{FRESNEL_FROM, crossing, fresnel};
 use super::rough::Facets;
-use super::{Facing, Finish};
+use super::{Facing, Finish, mirror_direction};
 use crate::Error;
 use crate::observer::Observer;
 use crate::patterns::{Compiler, Functions};
@@ -91,12 +91,20 @@ struct Lobe {
     facets: Option<Facets>,
 }
 
+impl Wgmd {
+    /// Diffuse reflection on the side that `ray` meets.
+    fn near(&self, ray: &Ray<'_>) -> Rgb {
+        if ray.cosine() > 0.0 { self.front } else { self.back }
+    }
+}
+
 impl<O: Observer> Walk<'_, O> {
     pub(crate) fn wgmd(&mut self, ray: &mut Ray<'_>, m: &Wgmd, finish: Finish, bare: &Finish) -> bool {
         if ray.is_shadow() && !m.transmits {
             return true;
         }
         let Some(facing) = self.visible_side(ray, finish.tilt) else { return false };
+        ray.normal = Facing::of(ray, bare.tilt, false).normal;
         let mut reflection = self.wgmd_lobe(ray, m, REFLECTION, m.reflection, finish, bare);
         let mut transmission = self.wgmd_lobe(ray, m, TRANSMISSION, m.transmission, finish, bare);
         // What an ideal reflection takes from the other parts, at the angle of the view and of the light.
@@ -115,7 +123,11 @@ impl<O: Observer> Walk<'_, O> {
         }
         if let Some(Lobe { colour, facing, facets: None }) = &transmission {
             let direction = self.wgmd_through(ray, facing);
-            let straight = !facing.textured || ray.is_shadow() || ray.is_ambient();
+            let flat = !facing.textured || ray.is_shadow() || ray.is_ambient();
+            let straight = flat && !ray.is_shadow() && {
+                let (near, (far, _)) = (m.near(ray) * finish.pattern, self.wgmd_far(ray, m, finish, bare));
+                colour.brightness() > (near + far).brightness() * rest
+            };
             self.pass(ray, direction, *colour, straight);
         }
         if ray.is_shadow() {
@@ -126,7 +138,7 @@ impl<O: Observer> Walk<'_, O> {
         match &reflection {
             Some(Lobe { colour, facing, facets: None }) => {
                 let straight = !facing.textured && ray.is_ambient();
-                self.reflect(ray, facing, *colour, straight);
+                self.reflect(ray, mirror_direction(ray.direction, facing), *colour, straight);
             }
             Some(Lobe { colour, facing, facets: Some(facets) }) => {
                 if threshold >= f64::from(colour.brightness()) - EPSILON {
@@ -145,13 +157,9 @@ impl<O: Observer> Walk<'_, O> {
                 self.sample_transmission(ray, facing, direction, *colour, facets);
             }
         }
-        let near = if ray.cosine() > 0.0 { m.front } else { m.back } * finish.pattern * rest;
-        let (far, far_normal) = if m.transmitted.max_element() > EPSILON as f32 {
-            let own = self.wgmd_finish(ray, m.diffuse_transmission, finish, bare);
-            (m.transmitted * own.pattern * rest, Facing::of(ray, own.tilt, true).normal)
-        } else {
-            (Rgb::ZERO, facing.normal)
-        };
+        let near = m.near(ray) * finish.pattern * rest;
+        let (far, far_normal) = self.wgmd_far(ray, m, finish, bare);
+        let far = far * rest;
         self.positive_ambient(ray, near + lumped_near, facing.normal);
         self.positive_ambient(ray, far + lumped_far, -far_normal);
 
@@ -189,6 +197,16 @@ impl<O: Observer> Walk<'_, O> {
             sum
         });
         true
+    }
+
+    /// What is transmitted diffusely, before an ideal reflection takes its part, and the normal it goes by.
+    fn wgmd_far(&mut self, ray: &mut Ray<'_>, m: &Wgmd, finish: Finish, bare: &Finish) -> (Rgb, DVec3) {
+        if m.transmitted.max_element() > EPSILON as f32 {
+            let own = self.wgmd_finish(ray, m.diffuse_transmission, finish, bare);
+            (m.transmitted * own.pattern, Facing::of(ray, own.tilt, true).normal)
+        } else {
+            (Rgb::ZERO, Facing::of(ray, finish.tilt, true).normal)
+        }
     }
 
     /// What a component's own modifiers make of a hit. Patterns and textures between the surface and the material hold

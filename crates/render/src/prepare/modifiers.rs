@@ -197,15 +197,17 @@ impl Modifiers {
         None
     }
 
-    /// The material that shades surfaces with this modifier, or the mixture that blends materials for them.
+    /// The material that shades surfaces with this modifier, or the mixture that blends materials for them or ends the chain.
     pub(crate) fn shader(&self, mut id: ObjectId) -> ObjectId {
         while id != VOID {
             let (node, definition, next) = self.get(id);
             match node {
                 Node::Material(_) => return definition,
                 Node::Mixture(m) if m.sides.iter().any(|&side| self.has_material(side)) => return definition,
-                _ => id = next,
+                Node::Mixture(_) if next == VOID => return definition,
+                _ => {}
             }
+            id = next;
         }
         VOID
     }

@@ -84,7 +84,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         let facing = Facing::of(ray, finish.tilt, false);
         let side = if front { 1.0 } else { -1.0 };
-        ray.normal = facing.normal * side;
+        ray.normal = facing.normal;
         let Some(axes) = Axes::new(facing.normal, up) else {
             self.tracer.scene.complaints.raise_orientation(m.functions.owner);
             return true;
