@@ -310,8 +310,14 @@ impl<'p> Ray<'p> {
 
     /// Effective length: the mirrored part's if that is worth more than half of the whole.
     pub(crate) fn effective_length(&self) -> f64 {
+        self.length_of(self.value)
+    }
+
+    /// Effective length for the ray before this one, to which it brings `light`: Radiance holds the mirrored part as it is
+    /// against half of that.
+    pub(crate) fn length_of(&self, light: Rgb) -> f64 {
         use ambit_base::Colour;
-        if self.mirrored.brightness() > 0.5 * self.value.brightness() {
+        if self.mirrored.brightness() > 0.5 * light.brightness() {
             self.mirrored_length
         } else {
             self.unmirrored_length

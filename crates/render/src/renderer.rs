@@ -18,7 +18,7 @@ use crate::work::Work;
 use crate::{Error, Options};
 use ambit_ambient::{Bounces, Cache, Miss, Params, Systems};
 use ambit_base::{DVec3, FAR, Notify, Rgb, Stream, hash_bits};
-use ambit_scene::{ObjectId, VOID};
+use ambit_scene::{Kind, ObjectId, VOID};
 use std::sync::{Mutex, PoisonError};
 
 /// Most requests that are shaded against one state of the cache.
@@ -217,7 +217,13 @@ impl Renderer {
 
     /// Identifier of an object, in whatever encoding the scene has; `*` for [`VOID`] as a surface is the caller's affair.
     pub fn name(&self, id: ObjectId) -> &[u8] {
-        if id == VOID { b"void" } else { self.scene.objects.name_bytes(id) }
+        if id == VOID {
+            return b"void";
+        }
+        let object = self.scene.objects.object(id);
+        // A mesh whose triangles keep their own materials tells the name that Radiance gives triangles.
+        let triangles = object.kind == Kind::Mesh && object.modifier == VOID;
+        if triangles { b"M-Tri" } else { self.scene.objects.name_bytes(id) }
     }
 }
 

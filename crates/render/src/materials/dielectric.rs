@@ -73,7 +73,7 @@ impl<O: Observer> Walk<'_, O> {
                 child.interior = beyond;
                 self.evaluate(&mut child);
                 let light = child.coefficient * child.value;
-                let length = child.effective_length();
+                let length = child.length_of(light);
                 ray.value += light;
                 let straight = self.is_flat(ray) && (!facing.textured || ray.is_ambient());
                 if straight || (eta - 1.0).abs() <= EPSILON {

@@ -28,7 +28,7 @@ impl<O: Observer> Walk<'_, O> {
         let Some(mut child) = self.child(ray, Kinds::REFLECTED, direction, coefficient, REFLECTED) else { return };
         self.evaluate(&mut child);
         let light = child.coefficient * child.value;
-        let beyond = child.effective_length();
+        let beyond = child.length_of(light);
         ray.value += light;
         ray.mirrored = light;
         ray.mirrored_length = ray.distance;
@@ -42,7 +42,7 @@ impl<O: Observer> Walk<'_, O> {
         let Some(mut child) = self.child(ray, Kinds::TRANSFERRED, direction, coefficient, PASSED) else { return };
         self.evaluate(&mut child);
         let light = child.coefficient * child.value;
-        let beyond = child.effective_length();
+        let beyond = child.length_of(light);
         ray.value += light;
         if straight {
             ray.unmirrored_length = ray.distance + beyond;

@@ -58,7 +58,7 @@ impl<O: Observer> Walk<'_, O> {
         child.target = relayed;
         self.evaluate(&mut child);
         let light = child.coefficient * child.value;
-        let beyond = child.effective_length();
+        let beyond = child.length_of(light);
         ray.value += light;
         ray.mirrored = light;
         ray.mirrored_length = ray.distance;

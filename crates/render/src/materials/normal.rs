@@ -193,7 +193,7 @@ impl<O: Observer> Walk<'_, O> {
         let k = child.coefficient;
         let light = k * child.value;
         let mirrored = k * child.mirrored;
-        let (r, x, e) = (child.mirrored_length, child.unmirrored_length, child.effective_length());
+        let (r, x, e) = (child.mirrored_length, child.unmirrored_length, child.length_of(light));
         ray.value += light;
         if split.through_specular >= 1.0 - EPSILON {
             ray.mirrored = mirrored;

@@ -77,7 +77,7 @@ impl<O: Observer> Walk<'_, O> {
             child.target = image.map(|i| i.of);
             self.evaluate(&mut child);
             let light = child.coefficient * child.value;
-            let beyond = child.effective_length();
+            let beyond = child.length_of(light);
             ray.value += light;
             if self.is_flat(ray) {
                 ray.unmirrored_length = ray.distance + beyond;

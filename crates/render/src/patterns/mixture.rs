@@ -113,11 +113,12 @@ impl<O: Observer> Walk<'_, O> {
             ray.mirrored += part.mirrored * k;
             let mirrored = part.mirrored.brightness() * k;
             let other = part.value.brightness() * k - mirrored;
-            if mirrored > most_mirrored {
+            // Of equals, as where all is black, the latter counts.
+            if mirrored >= most_mirrored {
                 most_mirrored = mirrored;
                 ray.mirrored_length = part.mirrored_length;
             }
-            if other > most {
+            if other >= most {
                 most = other;
                 ray.unmirrored_length = part.unmirrored_length;
             }
