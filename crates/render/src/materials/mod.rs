@@ -190,9 +190,7 @@ impl Facing {
         let cosine = -ray.direction.dot(normal);
         Self { geometric, normal, cosine, tilt, textured }
     }
-}
 
-impl Facing {
     /// d + 2 C N, on whichever side of the surface that may be.
     pub(crate) fn mirrored(&self, d: DVec3) -> DVec3 {
         d + self.normal * (2.0 * self.cosine)
