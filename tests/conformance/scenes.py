@@ -16,10 +16,14 @@ class Programs:
     folder: Path
     raypath: str | None
 
-    def environment(self):
+    def environment(self, helpers=None):
+        """The caller's environment with this side's library; tools of the folder `helpers` (gensky, xform …) come first on
+        the path."""
         env = {k: v for k, v in os.environ.items() if k != "RAYPATH"}
         if self.raypath is not None:
             env["RAYPATH"] = self.raypath
+        if helpers is not None:
+            env["PATH"] = f"{helpers}:{env['PATH']}"
         return env
 
     def run(self, program, arguments, folder, stdin=b"", out=None, timeout=600):
@@ -67,12 +71,11 @@ class Outside:
     script: Path
 
     def picture(self, side, work, options, size, timeout=600):
-        env = side.environment()
+        # A script may use helpers of the oracle's by name.
+        env = side.environment(ORACLE_BIN)
         env |= {p.upper(): str(side.folder / p) for p in ("oconv", "rpict")}
         # The scripts' sensor runs have options of their own: the pictures are what is compared.
         env |= {"RTRACE": "true", "OUT": str(work), "RES": str(size), "OPTS": " ".join(options)}
-        # A script may use helpers of the oracle's (gensky, xform …) by name.
-        env["PATH"] = f"{ORACLE_BIN}:{env['PATH']}"
         log = open(work / "log", "wb")
         done = subprocess.run(["timeout", str(timeout), "bash", str(self.script)], env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
         if done.returncode == 124:
@@ -81,6 +84,23 @@ class Outside:
             lines = [l for l in (work / "log").read_text("latin-1").splitlines() if "warning" not in l]
             raise RuntimeError(f"{side.name}: render.sh: status {done.returncode}: {lines[0] if lines else ''}")
         return work / "pic.hdr"
+
+
+    def caught(self, theirs, work):
+        """Its folder, its octree, compiled by `theirs`, and what its script tells rpict but for size and options."""
+        catch = work / "catch"
+        catch.write_text('#!/bin/sh\npwd > "$OUT/where"; for word do printf "%s\\n" "$word"; done > "$OUT/words"\n')
+        catch.chmod(0o755)
+        env = theirs.environment(theirs.folder) | {"OCONV": str(theirs.folder / "oconv"), "RPICT": str(catch), "RTRACE": "true"}
+        env |= {"OUT": str(work), "OPTS": "OPTIONS", "RES": "SIZE"}
+        done = subprocess.run(["bash", str(self.script)], env=env, stdin=subprocess.DEVNULL, capture_output=True)
+        if done.returncode != 0 or not (work / "words").exists():
+            raise RuntimeError(f"{self.script}: status {done.returncode}")
+        *words, octree = (work / "words").read_text().splitlines()
+        words = [w for w in words if w != "OPTIONS"]
+        for at in [i for i, w in enumerate(words) if w == "SIZE"][::-1]:
+            del words[at - 1:at + 1]
+        return Path((work / "where").read_text().strip()), octree, words
 
 
 ORACLE_BIN = None

@@ -85,7 +85,8 @@ impl<'a> Scene<'a> {
         let environment = Environment { find: &find, notify: &session.messages, definitions: &definitions };
         let loaded = load(source, &environment).map_err(failed)?;
         let header = loaded.header().clone();
-        let ambient = rendering.ambient_file.as_ref().filter(|_| !casting);
+        // Where nothing asks for records, a file without them would only be in the way of runs that do.
+        let ambient = rendering.ambient_file.as_ref().filter(|_| !casting && rendering.options.ambient.asks());
         let fingerprint = ambient.map(|_| loaded.fingerprint(&environment));
         let options = Options { casting, ..rendering.options.clone() };
         let mut renderer = Renderer::new(loaded, options, &environment).map_err(failed)?;
@@ -114,9 +115,7 @@ impl<'a> Scene<'a> {
         let ambient = rendering.ambient_file.as_ref().zip(rendering.reuse).zip(scene);
         if let Some(((file, reuse), scene)) = ambient {
             let ambient = &rendering.options.ambient;
-            if ambient.bounces <= 0 && ambient.weight <= 0 {
-                // Nothing asks for records: a file without them would only be in the way of runs that do.
-            } else if ambient.accuracy > EPSILON {
+            if ambient.accuracy > EPSILON {
                 let (header, owner) = (ambient_header(&self.session.program, rendering, name), owner());
                 let fingerprint = &scene.with(&rendering.options);
                 let store = Store { path: &path_of(file), header: &header, fingerprint, reuse, owner: &owner };

@@ -1,6 +1,6 @@
 //! Standard output that tells when nothing can be written. Rust's own opens `/dev/null` in the place of one that is
-//! closed, before a program begins, and a run's results would go there without a word. And it ignores SIGPIPE, so that
-//! nobody could tell any more whether the parent did.
+//! closed, before a program begins, and a run's results would go there without a word. And Rust's start ignores SIGPIPE, so
+//! that nobody could tell any more whether the parent did.
 
 use rustix::io::Errno;
 use signal_hook::consts::SIGPIPE;
@@ -27,10 +27,21 @@ fn look() {
 fn ignored_mask() -> Option<u64> {
     use rustix::fs::{Mode, OFlags, open};
     let file = open("/proc/self/status", OFlags::RDONLY | OFlags::CLOEXEC, Mode::empty()).ok()?;
-    // More than the file has, which ends where this mask has long been told.
-    let mut bytes = [0; 4096];
-    let length = rustix::io::read(&file, &mut bytes).ok()?;
-    let mut lines = bytes[..length].split(|&b| b == b'\n');
+    // Groups are listed before it: there is room for a thousand with long numbers.
+    let mut bytes = [0; 1 << 14];
+    let mut length = 0;
+    while length < bytes.len() {
+        match rustix::io::read(&file, &mut bytes[length..]).ok()? {
+            0 => break,
+            n => length += n,
+        }
+    }
+    mask_in(&bytes[..length])
+}
+
+/// The mask of ignored signals in the text of `/proc/self/status`.
+fn mask_in(status: &[u8]) -> Option<u64> {
+    let mut lines = status.split(|&b| b == b'\n');
     let mask = lines.find_map(|line| line.strip_prefix(b"SigIgn:"))?;
     u64::from_str_radix(std::str::from_utf8(mask).ok()?.trim(), 16).ok()
 }
@@ -97,4 +108,17 @@ impl Write for StandardOutput {
 /// Prints a text that a program answers with instead of working. Who cannot read it misses nothing, and no error tells.
 pub fn answer(text: &[u8]) {
     let _ = StandardOutput::ending().write_all(text);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::mask_in;
+
+    #[test]
+    fn the_mask_is_found_behind_any_number_of_groups() {
+        let groups = "100000 ".repeat(2000);
+        let status = format!("Name:\tx\nGroups:\t{groups}\nSigBlk:\t0000000000000001\nSigIgn:\t0000000000001000\n");
+        assert_eq!(mask_in(status.as_bytes()), Some(1 << 12));
+        assert_eq!(mask_in(b"SigBlk:\t0000000000000001\n"), None);
+    }
 }

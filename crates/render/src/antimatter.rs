@@ -60,12 +60,12 @@ impl<O: Observer> Walk<'_, O> {
         if m.first == VOID || inside(ray, m) <= 0 {
             return false;
         }
-        // The cut shows the inside of what was clipped: the surface as seen from behind.
+        // The cut shows the inside of what was clipped: the surface, and its textures, as seen from behind.
         if let Some(hit) = &mut ray.hit {
             hit.normal = -hit.normal;
             hit.cosine = -hit.cosine;
         }
-        self.shade_with(ray, m.first, *bare)
+        self.shade_with(ray, m.first, Finish { tilt: -bare.tilt, ..*bare })
     }
 }
 

@@ -91,6 +91,13 @@ pub struct Ambient {
     pub systems: Systems,
 }
 
+impl Ambient {
+    /// True if anything asks for records: interreflection, or the running average of `-aw`.
+    pub fn asks(&self) -> bool {
+        self.bounces > 0 || self.weight > 0
+    }
+}
+
 /// Which surfaces take part in the ambient calculation, by the name of their immediate modifier.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Selection {

@@ -25,10 +25,8 @@ impl<O: Observer> Walk<'_, O> {
             match node {
                 Node::Material(material) => {
                     let bare = finish;
-                    if bare.tilt != DVec3::ZERO {
-                        // What materials tell that turn no normal to the viewer.
-                        ray.normal = Facing::of(ray, bare.tilt, false).normal;
-                    }
+                    // What materials tell that turn no normal to the viewer.
+                    Self::note_normal(ray, bare.tilt);
                     if next != VOID && !self.gather(ray, next, &mut finish) {
                         return true;
                     }
@@ -50,10 +48,16 @@ impl<O: Observer> Walk<'_, O> {
             }
             id = next;
         }
-        if (O::ACTIVE || ray.parent.is_none()) && finish.tilt != DVec3::ZERO {
-            ray.normal = Facing::of(ray, finish.tilt, false).normal;
-        }
+        Self::note_normal(ray, finish.tilt);
         false
+    }
+
+    /// Notes the tilted normal, not turned to the viewer, of rays that are told of; nothing else asks for it.
+    #[inline]
+    pub(crate) fn note_normal(ray: &mut Ray<'_>, tilt: DVec3) {
+        if (O::ACTIVE || ray.parent.is_none()) && tilt != DVec3::ZERO {
+            ray.normal = Facing::of(ray, tilt, false).normal;
+        }
     }
 
     /// Applies a material's own modifiers, which may only be patterns, textures and mixtures of such; false on error.

@@ -69,8 +69,7 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         return Err(Failure::user("unsupported spectral sampling").into());
     }
     // Reports end with what can be counted at no great cost, where there is a cache.
-    let ambient = &options.rendering.options.ambient;
-    options.rendering.counts = options.report > 0 && ambient.bounces > 0;
+    options.rendering.counts = options.report > 0 && options.rendering.options.ambient.asks();
     if options.spacing > GREATEST_SPACING {
         let text = format!("pixel sampling reduced from {} to {GREATEST_SPACING}", options.spacing);
         session.messages.warn(&text);

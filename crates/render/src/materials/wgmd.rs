@@ -104,7 +104,8 @@ impl<O: Observer> Walk<'_, O> {
             return true;
         }
         let Some(facing) = self.visible_side(ray, finish.tilt) else { return false };
-        ray.normal = Facing::of(ray, bare.tilt, false).normal;
+        ray.normal = ray.hit.as_ref().map_or(facing.normal, |hit| hit.normal);
+        Self::note_normal(ray, bare.tilt);
         let mut reflection = self.wgmd_lobe(ray, m, REFLECTION, m.reflection, finish, bare);
         let mut transmission = self.wgmd_lobe(ray, m, TRANSMISSION, m.transmission, finish, bare);
         // What an ideal reflection takes from the other parts, at the angle of the view and of the light.
@@ -121,17 +122,19 @@ impl<O: Observer> Walk<'_, O> {
         if let Some(lobe) = &mut transmission {
             lobe.colour *= rest;
         }
-        if let Some(Lobe { colour, facing, facets: None }) = &transmission {
-            let direction = self.wgmd_through(ray, facing);
-            let flat = !facing.textured || ray.is_shadow() || ray.is_ambient();
-            let straight = flat && !ray.is_shadow() && {
-                let (near, (far, _)) = (m.near(ray) * finish.pattern, self.wgmd_far(ray, m, finish, bare));
-                colour.brightness() > (near + far).brightness() * rest
-            };
-            self.pass(ray, direction, *colour, straight);
-        }
         if ray.is_shadow() {
+            if let Some(Lobe { colour, facets: None, .. }) = &transmission {
+                self.pass(ray, ray.direction, *colour, false);
+            }
             return true;
+        }
+        let near = m.near(ray) * finish.pattern * rest;
+        let (far, far_normal) = self.wgmd_far(ray, m, finish, bare);
+        let far = far * rest;
+        if let Some(Lobe { colour, facing, facets: None }) = &transmission {
+            let flat = !facing.textured || ray.is_ambient();
+            let straight = flat && colour.brightness() > (near + far).brightness();
+            self.pass(ray, self.wgmd_through(ray, facing), *colour, straight);
         }
         let threshold = self.tracer.options.specular.threshold;
         let (mut lumped_near, mut lumped_far) = (Rgb::ZERO, Rgb::ZERO);
@@ -157,9 +160,6 @@ impl<O: Observer> Walk<'_, O> {
                 self.sample_transmission(ray, facing, direction, *colour, facets);
             }
         }
-        let near = m.near(ray) * finish.pattern * rest;
-        let (far, far_normal) = self.wgmd_far(ray, m, finish, bare);
-        let far = far * rest;
         self.positive_ambient(ray, near + lumped_near, facing.normal);
         self.positive_ambient(ray, far + lumped_far, -far_normal);
 
@@ -259,7 +259,7 @@ impl<O: Observer> Walk<'_, O> {
     /// The view direction behind the surface, bent by the texture.
     fn wgmd_through(&self, ray: &Ray<'_>, facing: &Facing) -> DVec3 {
         let d = ray.direction;
-        if !facing.textured || ray.is_shadow() || ray.is_ambient() || self.is_phong(ray) {
+        if !facing.textured || ray.is_ambient() || self.is_phong(ray) {
             return d;
         }
         // Radiance bends by the normals as the surface has them, also where it is seen from behind.
