@@ -178,13 +178,24 @@ fn deeper_questions_get_no_more_bounces_than_are_left() {
         format!("{} {} {} {} {} {}", 0.5 * n[0], 0.5 * n[1], 0.5 * n[2], -n[3], -n[4], -n[5])
     };
     let rays: Vec<String> = sensors(400).into_iter().map(outward).collect();
+    // What the upper half left in a file answers the hemispheres of the lower half.
+    let upper = |ray: &&String| !ray.rsplit(' ').next().expect("six numbers").starts_with('-');
+    let (upper, lower): (Vec<String>, Vec<String>) = rays.iter().cloned().partition(|ray| upper(&ray));
+    assert!(upper.len() > 100 && lower.len() > 100);
+    let scratch = tempfile::tempdir().expect("a scratch folder can be made");
     for bounces in [2, 3] {
         let series = wall * (1..=bounces + 1).map(|k| reflectance.powi(k)).sum::<f64>() / PI;
         let options = format!("-I- -ab {bounces} -aa .1 -ad 256 -as 0 -ar 0 -lw 1e-6 -n 2");
         let (apart, error) = mean(&scene, &options, &rays);
         assert!(error < 2e-3 * series, "{error}");
         assert!((apart - series).abs() < 2e-3 * series, "{bounces} bounces: {apart} for {series}");
-        let (mixed, _) = mean(&scene, &(options + " --bounces mixed"), &rays);
+        let (mixed, _) = mean(&scene, &format!("{options} --bounces mixed"), &rays);
         assert!(mixed > 1.003 * series, "{bounces} bounces, mixed: {mixed} for {series}");
+
+        let file = scratch.path().join(format!("{bounces}.amb"));
+        let options = format!("{options} -af {}", file.display());
+        mean(&scene, &options, &upper);
+        let (continued, _) = mean(&scene, &options, &lower);
+        assert!((continued - series).abs() < 2e-3 * series, "{bounces} bounces, from a file: {continued} for {series}");
     }
 }

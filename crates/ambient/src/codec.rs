@@ -1,11 +1,13 @@
 //! The bytes of a record in ambient files: big-endian, without padding; reals are 31-bit mantissas with a binary
-//! exponent, directions 32-bit codes, the value a mantissa for each component with a common exponent.
+//! exponent, directions 32-bit codes, the value a mantissa for each component with a common exponent. What reals of single
+//! precision leave of their mantissas tells what the last bounces brought (`shares`).
 
 use crate::components::Components;
 use crate::record::Record;
+use crate::shares::{CARRIERS, late, shares};
 use ambit_base::{DVec3, Rgb};
-use ambit_file::{FLOAT_BYTES, decode_direction, decode_float, decode_spectrum};
-use ambit_file::{encode_direction, encode_float, encode_spectrum};
+use ambit_file::{FLOAT_BYTES, decode_direction, decode_float, decode_single, decode_spectrum};
+use ambit_file::{encode_direction, encode_float, encode_single, encode_spectrum};
 use std::ops::Range;
 
 /// The length of a record of three components.
@@ -71,8 +73,8 @@ impl Layout {
         put(21, &encode_direction(record.normal).to_be_bytes());
         put(25, &encode_direction(record.u).to_be_bytes());
         let reals = record.radii.iter().chain(&record.gradient).chain(&record.rotation);
-        for (k, &x) in reals.enumerate() {
-            put(radii + k * FLOAT_BYTES, &encode_float(f64::from(x)));
+        for (k, (&x, share)) in reals.zip(shares(record)).enumerate() {
+            put(radii + k * FLOAT_BYTES, &encode_single(x, share));
         }
         put(corral, &record.corral.to_be_bytes());
         let mut channels = [0.0; Components::MOST];
@@ -85,9 +87,11 @@ impl Layout {
     /// null direction.
     pub fn decode(self, bytes: &[u8], components: &Components) -> Record {
         let (value, radii, corral) = self.offsets();
-        let real = |at: usize| decode_float([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3], bytes[at + 4]]);
+        let five = |at: usize| [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3], bytes[at + 4]];
+        let real = |at: usize| decode_float(five(at));
         let word = |at: usize| [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]];
-        let pair = |k: usize| [0, 1].map(|i| real(radii + (k + i) * FLOAT_BYTES) as f32);
+        let singles: [_; CARRIERS] = std::array::from_fn(|k| decode_single(five(radii + k * FLOAT_BYTES)));
+        let pair = |k: usize| [singles[k].0, singles[k + 1].0];
         let direction = |at: usize| decode_direction(u32::from_be_bytes(word(at)));
         let mut channels = [0.0; Components::MOST];
         let channels = &mut channels[..components.count()];
@@ -107,6 +111,10 @@ impl Layout {
             late: Box::default(),
         };
         components.give(channels, &mut record);
+        // Where another program left something else than nothing, it tells of no bounces.
+        let told = singles.iter().all(|(_, beside)| beside.is_some());
+        let shares = singles.map(|(_, beside)| beside.filter(|_| told).unwrap_or(0));
+        record.late = late(shares, &record);
         record
     }
 }

@@ -47,6 +47,7 @@ mod reuse;
 mod round;
 mod sampler;
 mod select;
+mod shares;
 mod sieve;
 mod steps;
 mod store;

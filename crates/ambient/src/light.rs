@@ -4,7 +4,8 @@
 //! them, so that `-ab 2` brings some of the light of the third bounce, the more the more records the eye has made. Here
 //! hemispheres add up, beside the light that their samples bring, what of it the last bounce and the last two brought, at
 //! no ray more; a question one level deeper than the record is answered without the former, two levels deeper without the
-//! latter. Ambient files hold whole values only: records read from them answer as in Radiance, with all their bounces.
+//! latter. Ambient files tell it in bits that other programs do not read (`shares`); records that others write answer as in
+//! Radiance, with all their bounces.
 
 use ambit_base::Rgb;
 use std::ops::{AddAssign, Mul};

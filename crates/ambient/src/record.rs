@@ -32,7 +32,8 @@ pub struct Record {
     pub value: Rgb,
     /// The same in the further passes of a calculation by wavelength; none without.
     pub further: Box<[Rgb]>,
-    /// What of the values the last bounce, and the last two, brought, in each pass; none where it is not known, as in files.
+    /// What of the values the last bounce, and the last two, brought, in each pass; none where it is not known, as in files
+    /// of other programs.
     pub late: Box<[[Rgb; APART]]>,
 }
 
@@ -59,11 +60,11 @@ impl Record {
             && self.values().all(|v| v.to_array().iter().all(|&c| c >= 0.0 && below(c)))
     }
 
-    /// The record as an ambient file of such components would return it; what the last bounces brought, which files do not
-    /// hold, is kept.
+    /// The record as an ambient file of such components would return it; what the last bounces brought, which files hold
+    /// more coarsely, is kept.
     pub fn quantised(&self, components: &Components) -> Self {
         let kept = Layout::CURRENT.decode(&Layout::CURRENT.encode(self, components), components);
-        // Rounding must not move what fewer bounces bring, which files do not hold.
+        // Rounding must not move what fewer bounces bring.
         let rounded = |(pass, late): (usize, &[Rgb; APART])| {
             let off = kept.of_pass(pass as u8) - self.of_pass(pass as u8);
             late.map(|l| l + off)

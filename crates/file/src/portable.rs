@@ -37,6 +37,37 @@ pub fn decode_float(bytes: [u8; FLOAT_BYTES]) -> f64 {
     centred * (1.0 / MANTISSA) * power_of_two(i32::from(e as i8))
 }
 
+/// The greatest number that fits beside a real number of single precision.
+pub const SPARE: u8 = 62;
+
+/// Encodes a real number of single precision with another one of 0 to [`SPARE`] in what is left of the mantissa: seven
+/// bits, of which half a step is where rounding begins. Who reads the number in single precision, as other programs do,
+/// meets `x` whatever stands beside it; beside 0 the bytes are those of [`encode_float`].
+pub fn encode_single(x: f32, beside: u8) -> [u8; FLOAT_BYTES] {
+    let [a, b, c, d, e] = encode_float(f64::from(x));
+    let m = i32::from_be_bytes([a, b, c, d]);
+    let beside = i32::from(beside.min(SPARE));
+    // Beside a zero it stands with the least exponent, far below single precision.
+    let (m, e) = match m {
+        0 if beside > 0 => (beside, i8::MIN as u8),
+        0.. => (m.saturating_add(beside), e),
+        _ => (m.saturating_sub(beside), e),
+    };
+    let [a, b, c, d] = m.to_be_bytes();
+    [a, b, c, d, e]
+}
+
+/// The real number in single precision, and what stands beside it; None if that is not what [`encode_single`] writes.
+pub fn decode_single(bytes: [u8; FLOAT_BYTES]) -> (f32, Option<u8>) {
+    let [a, b, c, d, e] = bytes;
+    let x = decode_float(bytes) as f32;
+    let plain = encode_float(f64::from(x));
+    let size = |[a, b, c, d]: [u8; 4]| i32::from_be_bytes([a, b, c, d]).unsigned_abs();
+    let beside = size([a, b, c, d]).checked_sub(size([plain[0], plain[1], plain[2], plain[3]]));
+    let beside = beside.and_then(|n| u8::try_from(n).ok()).filter(|&n| n <= SPARE && encode_single(x, n)[4] == e);
+    (x, beside)
+}
+
 /// x = f·2^e with ½ ≤ |f| < 1; zero, subnormal numbers and NaN give (0, 0), infinity an exponent above every other.
 fn split(x: f64) -> (f64, i32) {
     const EXPONENT: u64 = 0x7ff << 52;
@@ -154,6 +185,19 @@ mod tests {
     }
 
     #[test]
+    fn what_stands_beside_a_number_is_below_single_precision() {
+        for x in [0.0, 1.0, -1.0, 0.5, -0.5, 1.0 - f32::EPSILON / 2.0, 1.0 + f32::EPSILON, 0.1, 1e30, 1e-30, 3.0f32] {
+            for n in 0..=SPARE {
+                let bytes = encode_single(x, n);
+                // What another program makes of it.
+                assert_eq!(decode_float(bytes) as f32, x, "beside {n}");
+                assert_eq!(decode_single(bytes), (x, Some(n)));
+            }
+        }
+        assert_eq!(decode_single(encode_float(0.1)).1, None, "of double precision");
+    }
+
+    #[test]
     fn powers_of_two_survive_exactly() {
         for e in -128..127 {
             for x in [2f64.powi(e), -2f64.powi(e)] {
@@ -187,6 +231,16 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn single_precision_is_kept_beside_everything(x in prop::num::f32::NORMAL, n in 0..=SPARE) {
+            let kept = encode_single(x, n);
+            prop_assert_eq!(decode_float(kept) as f32, decode_float(encode_float(f64::from(x))) as f32);
+            // Numbers next to the greatest, which stands for all above, leave no room.
+            if x.abs() < 1e38 {
+                prop_assert_eq!(decode_single(kept), (decode_float(encode_float(f64::from(x))) as f32, Some(n)));
+            }
+        }
+
         #[test]
         fn every_decoded_number_encodes_to_itself(m in any::<i32>(), e in any::<i8>()) {
             let [a, b, c, d] = m.to_be_bytes();
