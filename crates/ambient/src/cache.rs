@@ -119,7 +119,7 @@ impl Cache {
         let mut dropped = 0;
         for record in records {
             let level = usize::from(record.level);
-            if self.insert(record) {
+            if self.insert(record, true) {
                 let loaded = &mut self.statistics.loaded;
                 loaded.resize(loaded.len().max(level + 1), 0);
                 loaded[level] += 1;
@@ -130,8 +130,8 @@ impl Cache {
         dropped
     }
 
-    /// Stores a record; false if it is implausible or there already.
-    pub(crate) fn insert(&mut self, mut record: Record) -> bool {
+    /// Stores a record, computed by this run or `found`; false if it is implausible or there already.
+    pub(crate) fn insert(&mut self, mut record: Record, found: bool) -> bool {
         if !record.is_plausible() || record.further.len() + 1 != usize::from(self.params.passes.max(1)) {
             return false;
         }
@@ -144,7 +144,7 @@ impl Cache {
             let radius = reins.allowed(record.position, unwidened(&record));
             clamp(&mut record, radius);
         }
-        if !self.store.insert(&record, &self.limits) {
+        if !self.store.insert(&record, &self.limits, found) {
             return false;
         }
         self.average.add(record.level, record.values());

@@ -15,6 +15,8 @@ pub(crate) struct Entry {
     pub(crate) weight: f32,
     pub(crate) level: u8,
     pub(crate) corralled: bool,
+    /// A file brought it: an earlier run computed it, or another process.
+    pub(crate) found: bool,
 
     pub(crate) gradient: [f32; 2],
     pub(crate) rotation: [f32; 2],
@@ -27,7 +29,7 @@ const _: () = assert!(size_of::<Entry>() == 128, "a record is two lines of the c
 
 impl Entry {
     /// `apart` if bounces are told apart.
-    pub(crate) fn of(record: &Record, apart: bool) -> Self {
+    pub(crate) fn of(record: &Record, apart: bool, found: bool) -> Self {
         Self {
             position: record.position.to_array(),
             normal: record.normal.as_vec3().to_array(),
@@ -36,6 +38,7 @@ impl Entry {
             weight: record.weight,
             level: record.level,
             corralled: record.corral != 0,
+            found,
             gradient: record.gradient,
             rotation: record.rotation,
             corral: record.corral,

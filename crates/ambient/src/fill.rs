@@ -227,14 +227,14 @@ impl Cache {
                 Outcome::Record(record, value) => {
                     let sum = delta.lookup(&self.limits, sampler, &queries[q]);
                     let covered = sum.answer().is_some() && sum.is_enough(self.params.enough(record.level));
-                    if !covered && self.insert(record.clone()) {
+                    if !covered && self.insert(record.clone(), false) {
                         // What is new is numbered alike in both trees, but for where it begins.
                         let new = &self.records()[first..];
                         for &(id, _) in self.changed.iter().filter(|(id, _)| *id as usize >= first) {
                             let k = id as usize - first;
                             delta.shrink(k as u32, new[k].radii);
                         }
-                        let both = delta.insert(new.last().expect("it was just stored"), &self.limits);
+                        let both = delta.insert(new.last().expect("it was just stored"), &self.limits, false);
                         debug_assert!(both, "what the store takes its part takes");
                     }
                     *value

@@ -98,8 +98,8 @@ impl Store {
     }
 
     /// Files a record in the cells of its reach. False if an equal one is there already.
-    pub(crate) fn insert(&mut self, record: &Record, limits: &Limits) -> bool {
-        let entry = Entry::of(record, self.apart);
+    pub(crate) fn insert(&mut self, record: &Record, limits: &Limits, found: bool) -> bool {
+        let entry = Entry::of(record, self.apart, found);
         let reach = f64::from(record.radii[1]) * limits.used(record.level);
         let (mut edge, mut depth) = (self.edge, 0u32);
         while edge * 0.5 > CELL * reach && depth < MAX_DEPTH {

@@ -197,3 +197,24 @@ fn a_point_beside_a_wall_is_answered_by_its_own_record() {
         assert!(matches!(cache.ask(&room, &miss.query), Answer::Value(_)), "{distance} from the wall");
     }
 }
+
+#[test]
+fn what_a_file_brought_is_not_thickened_between_its_places() {
+    let room = Room::new();
+    let params = Params { overlap: crate::OVERLAP, ..params(2) };
+    let empty = || Cache::new(params, DVec3::splat(-0.01), 1.02);
+    let added = |cache: &mut Cache, side: u32| {
+        let before = cache.records().len();
+        let missed: Vec<_> =
+            room.pixels(side).into_iter().filter(|m| cache.ask(&room, &m.query) == Answer::Miss).collect();
+        cache.resolve(&room, &missed);
+        cache.records().len() - before
+    };
+    let mut own = empty();
+    added(&mut own, 24);
+    let mut read = empty();
+    assert_eq!(read.load(own.records().iter().cloned()), 0);
+    assert_eq!(added(&mut read, 24), 0, "the same places need nothing");
+    let (thickened, added) = (added(&mut own, 37), added(&mut read, 37));
+    assert!(3 * added < 2 * thickened, "{added} records are added to those of a file, {thickened} to one's own");
+}

@@ -69,7 +69,7 @@ fn answer(records: &[Record], wall: &Wall, query: &Query<()>) -> Option<Rgb> {
 fn answer_within(limits: &Limits, records: &[Record], wall: &Wall, query: &Query<()>) -> Option<Rgb> {
     let mut store = Store::new(DVec3::splat(-2.0), 4.0, 1, false);
     for r in records {
-        assert!(store.insert(r, limits));
+        assert!(store.insert(r, limits, false));
     }
     store.lookup(limits, wall, query).answer().map(|light| light.value)
 }
@@ -280,7 +280,7 @@ fn every_record_in_reach_is_found_if_need_be() {
         })
         .collect();
     for r in &records {
-        assert!(store.insert(r, &limits()));
+        assert!(store.insert(r, &limits(), false));
     }
     let (mut answered, mut some) = (0, 0);
     for k in 0..2000 {

@@ -52,7 +52,7 @@ pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &m
     let light = cache.ending(query.level, mean(cells.iter()));
     match finish(&cache.limits, query, &plan, &cells, &[light]) {
         Outcome::Record(record, value) => {
-            cache.insert(record);
+            cache.insert(record, false);
             value
         }
         Outcome::Once(value) => value,
