@@ -1,7 +1,8 @@
 //! The tree: boxes in, eight-wide nodes and lists of leaves out.
 //!
 //! Surfaces with equal boxes are grouped first, since clustering would chain them. Large inputs are cut into portions
-//! by [`crate::split`], which bounds the memory that clustering takes; obvhs clusters each portion (PLOC, Meister and
+//! by [`crate::split`], which bounds the memory that clustering takes; obvhs clusters each portion, as many at a time as there
+//! are threads (PLOC, Meister and
 //! Bittner 2018, with parallel reinsertion, Meister and Bittner 2018b); if its tree is too deep the splitter does that portion too. Up
 //! to eight surfaces of a kind become a leaf; [`crate::collapse`] makes wide nodes of the rest.
 
@@ -64,6 +65,12 @@ pub(crate) struct Part {
     pub(crate) blocks: [Vec<[u32; LANES]>; 2],
 }
 
+/// Portions with their trees, and how they lie in the whole.
+enum Portions {
+    One(Part, Under),
+    Two(Box<[Self; 2]>),
+}
+
 /// Surfaces numbered kind by kind: `boxes[i]` is that of surface `i`, the first `counts[0]` are of kind 0 and so on.
 struct Input<'a> {
     boxes: &'a [Box32],
@@ -91,7 +98,7 @@ pub(crate) fn build(boxes: Vec<Box32>, counts: [usize; 2]) -> Result<Tree, Build
     let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
     let mut part = Part::default();
     let root = (!order.is_empty()).then(|| {
-        let under = input.portions(&mut order, &mut part);
+        let under = part.gather(input.portions(&mut order));
         part.finish(&under)
     });
     drop(order);
@@ -102,15 +109,16 @@ pub(crate) fn build(boxes: Vec<Box32>, counts: [usize; 2]) -> Result<Tree, Build
 
 impl Input<'_> {
     /// Cuts what is too large to cluster at once.
-    fn portions(&self, order: &mut [u32], part: &mut Part) -> Under {
+    fn portions(&self, order: &mut [u32]) -> Portions {
         if order.len() <= PORTION {
-            return self.cluster(order, part);
+            let mut part = Part::default();
+            let under = self.cluster(order, &mut part);
+            return Portions::One(part, under);
         }
         let middle = split(order, &|i| self.bounds(i));
         let (left, right) = order.split_at_mut(middle);
-        let a = self.portions(left, part);
-        let b = self.portions(right, part);
-        part.join(a, b)
+        let (a, b) = rayon::join(|| self.portions(left), || self.portions(right));
+        Portions::Two(Box::new([a, b]))
     }
 
     fn cluster(&self, order: &mut [u32], part: &mut Part) -> Under {
@@ -244,6 +252,41 @@ impl Part {
                 self.nodes.push(pair);
                 Under::Done(Child { bounds, word: self.nodes.len() as u32 - 1 })
             }
+        }
+    }
+
+    /// Puts portions into one, in their order.
+    fn gather(&mut self, portions: Portions) -> Under {
+        match portions {
+            Portions::One(part, under) => self.append(part, under),
+            Portions::Two(both) => {
+                let [a, b] = *both;
+                let a = self.gather(a);
+                let b = self.gather(b);
+                self.join(a, b)
+            }
+        }
+    }
+
+    /// Adds another's nodes and leaves behind those that are there; `under` is its root.
+    fn append(&mut self, part: Self, under: Under) -> Under {
+        let nodes = self.nodes.len() as u32;
+        let leaves = [0, 1].map(|kind| self.blocks[kind].len() as u32);
+        let moved = |child: Child| {
+            let by = match child.word {
+                word if word & node::LEAF == 0 => nodes,
+                // An item stands for itself.
+                word => leaves.get(node::kind(word) as usize).copied().unwrap_or(0),
+            };
+            Child { word: child.word + by, ..child }
+        };
+        self.nodes.extend(part.nodes.into_iter().map(|pair| pair.map(moved)));
+        for (all, more) in self.blocks.iter_mut().zip(part.blocks) {
+            all.extend(more);
+        }
+        match under {
+            Under::Done(child) => Under::Done(moved(child)),
+            few @ Under::Few { .. } => few,
         }
     }
 
