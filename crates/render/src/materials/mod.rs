@@ -115,6 +115,11 @@ impl Material {
         matches!(self, Self::Bsdf(m) if m.proxy)
     }
 
+    /// False if nothing that modifies the material matters, be it another material, which is an error elsewhere.
+    pub(crate) fn takes_finish(&self) -> bool {
+        !matches!(self, Self::Prism(_) | Self::Antimatter(_))
+    }
+
     /// Lights and antimatter keep their meaning under the irradiance switch.
     fn keeps_meaning(&self) -> bool {
         matches!(self, Self::Light(_) | Self::Antimatter(_))
