@@ -367,6 +367,10 @@ impl<O: Observer> Walk<'_, O> {
                     Shadow::Blocked(_) => return None,
                     Shadow::Other(hit) => {
                         found = found.or(Some(hit));
+                        // A pattern of a source without a place is told where the last pane is.
+                        if target.is_none() && source.patterned {
+                            break;
+                        }
                         let Some(k) = self.through_pane(&hit) else { break };
                         panes *= k;
                         if panes == Rgb::ZERO {
