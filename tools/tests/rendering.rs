@@ -269,6 +269,19 @@ fn frames_that_exist_are_not_made_again() {
     assert_eq!(String::from_utf8_lossy(&again.stderr), warnings);
 }
 
+#[test]
+fn single_pictures_have_number_0_and_empty_ones_no_distances() {
+    let bench = Bench::new();
+    assert!(bench.rpict("-w -x 20 -y 20 -o g%02d.hdr -z g%d.z scene.oct", b"").status.success());
+    let picture = std::fs::read(bench.path("g00.hdr")).unwrap();
+    assert!(!String::from_utf8_lossy(&picture).contains("FRAME="));
+    assert_eq!(std::fs::read(bench.path("g0.z")).unwrap().len(), 20 * 20 * 4);
+    let empty = bench.rpict("-x 0 -o h.hdr -z h.z scene.oct", b"");
+    assert!(empty.status.success());
+    assert!(String::from_utf8_lossy(&empty.stderr).contains("warning - empty output picture"));
+    assert!(bench.path("h.hdr").exists() && !bench.path("h.z").exists());
+}
+
 /// Programs that render a sequence together would meet here: one asks whether a picture exists, then another begins it.
 #[test]
 #[cfg(unix)]

@@ -133,7 +133,15 @@ fn limits_and_options_are_refused_as_by_radiance() {
     }
     // A range without the peaks shows no colours: a warning, an error, or nothing if bins are written.
     let warning = "rtrace: warning - spectral range incompatible with color output";
-    for (line, warns) in [("-cs 6 -cw 600 700", true), ("-cw 600 700", true), ("-cs 6 -cw 600 700 -co+", false)] {
+    let lines = [
+        ("-cs 6 -cw 600 700", true),
+        ("-cw 600 700", true),
+        ("-cw 600 700 -pXYZ", true),
+        ("-cs 6 -cw 600 700 -co+", false),
+        ("-cw 600 700 -pY", false),
+        ("-cs 6 -cw 600 700 -pA", false),
+    ];
+    for (line, warns) in lines {
         let output = bench.rtrace(&format!("-h {line}"), DOWN);
         assert_eq!((output.status.code(), says(&output).contains(warning)), (Some(0), warns), "{line}");
     }

@@ -2,6 +2,7 @@
 
 use crate::materials::Finish;
 use crate::observer::Observer;
+use crate::prepare::Node;
 use crate::ray::{ClipSet, Kinds, Ray};
 use crate::walk::Walk;
 use ambit_scene::{ObjectId, VOID};
@@ -57,7 +58,7 @@ impl<O: Observer> Walk<'_, O> {
     pub(crate) fn antimatter(&mut self, ray: &mut Ray<'_>, m: &Antimatter, bare: &Finish) -> bool {
         let front = ray.cosine() > 0.0;
         ray.next_clipped = self.tracer.scene.clip_sets.changed(ray.clipped, &m.listed, front);
-        if m.first == VOID || inside(ray, m) <= 0 {
+        if m.first == VOID || self.inside(ray, m) <= 0 {
             return false;
         }
         // The cut shows the inside of what was clipped: the surface, and its textures, as seen from behind.
@@ -67,22 +68,30 @@ impl<O: Observer> Walk<'_, O> {
         }
         self.shade_with(ray, m.first, Finish { tilt: -bare.tilt, ..*bare })
     }
-}
 
-/// How many more clipped surfaces the ray's ancestors entered than left.
-fn inside(ray: &Ray<'_>, m: &Antimatter) -> i32 {
-    let mut count = 0;
-    let mut link = ray;
-    while let Some(parent) = link.parent {
-        let reflected = Kinds::REFLECTED.union(Kinds::SPECULAR_REFLECTED).union(Kinds::AMBIENT_REFLECTED);
-        // Where it was reflected, a ray did not cross.
-        if !link.kind.meets(reflected.union(Kinds::SHADOW_REFLECTED))
-            && let Some(hit) = &parent.hit
-            && m.listed.binary_search(&hit.modifier).is_ok()
-        {
-            count += if hit.cosine > 0.0 { 1 } else { -1 };
+    /// How many more clipped surfaces the ray's ancestors entered than left. What a ray leaves through counts as entered
+    /// where its material has turned it to the viewer.
+    fn inside(&self, ray: &Ray<'_>, m: &Antimatter) -> i32 {
+        let mut count = 0;
+        let mut link = ray;
+        while let Some(parent) = link.parent {
+            let reflected = Kinds::REFLECTED.union(Kinds::SPECULAR_REFLECTED).union(Kinds::AMBIENT_REFLECTED);
+            // Where it was reflected, a ray did not cross.
+            if !link.kind.meets(reflected.union(Kinds::SHADOW_REFLECTED))
+                && let Some(hit) = &parent.hit
+                && m.listed.binary_search(&hit.modifier).is_ok()
+            {
+                let entered = hit.cosine > 0.0 || self.turned(parent);
+                count += if entered { 1 } else { -1 };
+            }
+            link = parent;
         }
-        link = parent;
+        count
     }
-    count
+
+    /// True if the ray has been shaded by a material that looks the same from both sides.
+    fn turned(&self, ray: &Ray<'_>) -> bool {
+        let of = |id| self.tracer.scene.modifiers.get(id).0;
+        ray.material != VOID && matches!(of(ray.material), Node::Material(m) if m.is_two_sided())
+    }
 }

@@ -36,6 +36,8 @@ impl Kinds {
     pub(crate) const INDIRECT: Self = Self(16 | 32 | 64 | 128);
     /// Kinds that count as a reflection.
     const RAISING: Self = Self(2 | 16 | 64 | 256);
+    /// Kinds that see as far as there is light, however near the aft clipping plane is; the others end with their parents.
+    const UNLIMITED: Self = Self(2 | 16 | 64 | 256 | 512);
     /// Kinds that stay aimed at the parent's source.
     const AIMED: Self = Self(4 | 8 | 32 | 128);
     /// Kinds that pass through, so far as the `-i` switch is concerned.
@@ -210,7 +212,7 @@ impl<'p> Ray<'p> {
             coefficient: k,
             throughput: self.throughput * k,
             target: if kind.meets(Kinds::AIMED) { self.target } else { None },
-            limit: if !kind.meets(Kinds::RAISING) && self.limit < FAR && self.limit > EPSILON {
+            limit: if !kind.meets(Kinds::UNLIMITED) && self.limit < FAR && self.limit > EPSILON {
                 self.limit - self.distance
             } else {
                 FAR

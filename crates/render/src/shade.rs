@@ -27,7 +27,7 @@ impl<O: Observer> Walk<'_, O> {
                     let bare = finish;
                     // What materials tell that turn no normal to the viewer.
                     Self::note_normal(ray, bare.tilt);
-                    if next != VOID && !self.gather(ray, next, &mut finish) {
+                    if next != VOID && material.takes_finish() && !self.gather(ray, next, &mut finish) {
                         return true;
                     }
                     ray.material = definition;

@@ -35,17 +35,17 @@ impl<O: Observer> Walk<'_, O> {
             return;
         }
         self.work.nested += 1;
-        match self.tracer.scene.world.nearest(&ray.query()) {
-            Some(hit) => self.shade_hit(ray, hit),
-            None if ray.limit < FAR => {
+        if let Some(hit) = self.tracer.scene.world.nearest(&ray.query()) {
+            self.shade_hit(ray, hit);
+        } else {
+            if ray.limit < FAR {
                 ray.point = ray.origin + ray.direction * ray.limit;
-                self.observer.finished(self.tracer, ray);
-            }
-            None => {
+            } else {
                 self.distant(ray);
-                self.observer.finished(self.tracer, ray);
-                self.medium(ray);
             }
+            self.observer.finished(self.tracer, ray);
+            // A medium goes on without end, whatever the limit of sight.
+            self.medium(ray);
         }
         self.work.nested -= 1;
     }

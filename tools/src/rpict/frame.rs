@@ -3,6 +3,7 @@
 use super::header::resolution_line;
 use super::output::PictureOutput;
 use super::recover::{self, Recovered};
+use super::sequence::numbered;
 use super::shots::Shots;
 use super::watch::Watch;
 use crate::colour::Conversion;
@@ -84,8 +85,9 @@ impl Frame {
         }
         let view = recovered.as_ref().map_or(&options.view, |r| &r.view);
         let mut frame = Self::new(set_up(view)?, options);
-        frame.output.clone_from(&options.output);
-        frame.distances.clone_from(&options.distances);
+        // The names of a sequence's pictures, without one: its number is 0.
+        let named = |pattern: &Option<String>| pattern.as_ref().map(|p| numbered(p, 0));
+        (frame.output, frame.distances) = (named(&options.output), named(&options.distances));
         frame.take_over(recovered);
         Ok(frame)
     }
@@ -112,11 +114,11 @@ impl Picture<'_> {
             return Err(Failure::unsupported(&what).into());
         }
         let done = frame.recovered.as_ref().map_or(0, |r| r.lines.len() as u32);
-        let Some(mut output) = PictureOutput::open(frame, done)? else { return Ok(false) };
+        let empty = width == 0 || height == 0;
+        let Some(mut output) = PictureOutput::open(frame, done, empty)? else { return Ok(false) };
         let mut head = Vec::new();
         // Writing to memory does not fail.
         let _ = self.header(frame, &scene.header, frame.first).write(&mut head);
-        let empty = width == 0 || height == 0;
         let (columns, rows) = if empty { (0, 0) } else { (width, height) };
         head.extend_from_slice(resolution_line(columns, rows).as_bytes());
         output.head(&head)?;

@@ -18,8 +18,9 @@ pub(crate) struct PictureOutput {
 /// [`encode_scanline`] itself.
 impl PictureOutput {
     /// Opens the outputs of a frame whose `done` upper rows are there. A picture's file must be new: if it is not, and
-    /// others may make it (`Frame::shared`), there is nothing to open. A file of distances is written over.
-    pub(crate) fn open(frame: &Frame, done: u32) -> Result<Option<Self>, Failure> {
+    /// others may make it (`Frame::shared`), there is nothing to open. A file of distances is written over; of an `empty`
+    /// picture there is none.
+    pub(crate) fn open(frame: &Frame, done: u32, empty: bool) -> Result<Option<Self>, Failure> {
         let stream: Box<dyn Write> = match &frame.output {
             None => Box::new(StandardOutput::new()),
             Some(name) => match OpenOptions::new().write(true).create_new(true).open(path_of(name)) {
@@ -29,7 +30,7 @@ impl PictureOutput {
                 Err(e) => return Err(Failure::system(format!("cannot open output file \"{name}\""), &e)),
             },
         };
-        let distances = match &frame.distances {
+        let distances = match frame.distances.as_ref().filter(|_| !empty) {
             None => None,
             Some(name) => {
                 let failed = |e: io::Error| Failure::system(format!("cannot open z-file \"{name}\""), &e);

@@ -95,7 +95,7 @@ fn next_view(views: &mut impl BufRead, view: &mut View, program: &str) -> Result
 }
 
 /// A pattern with its number, as `printf` writes it: the first `%d`, `%4d` or `%04d`; `%%` is a `%`.
-fn numbered(pattern: &str, number: i32) -> String {
+pub(super) fn numbered(pattern: &str, number: i32) -> String {
     let mut out = String::new();
     let mut rest = pattern;
     let mut used = false;

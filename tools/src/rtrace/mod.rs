@@ -97,7 +97,7 @@ impl Job {
         let spec = OutputSpec::parse(&options.fields)?;
         let spectrum = &options.rendering.options.spectrum;
         let conversion = Converter::new(options.common.output, spectrum);
-        if !spectrum.shows_colour() && !options.common.output.bins() {
+        if !spectrum.shows_colour() && !options.common.output.bins() && conversion.channels() == 3 {
             session.messages.warn("spectral range incompatible with color output");
         }
         if options.format == OutputFormat::Colour {

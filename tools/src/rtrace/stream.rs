@@ -25,6 +25,8 @@ pub(crate) struct Stream {
     interval: u64,
     /// Stop after so many records; 0 for never.
     most: u64,
+    /// Whether a number of records was told (`-y`), be it one that is never reached because it is negative.
+    promised: bool,
 }
 
 impl Stream {
@@ -39,7 +41,7 @@ impl Stream {
         // In a picture only a width of one flushes.
         let interval = if y > 0 && x > 1 { 0 } else { x };
         let most = if y > 0 { x.max(1) * y } else { 0 };
-        Self { aim, limited: options.limited, interval, most }
+        Self { aim, limited: options.limited, interval, most, promised: options.height != 0 }
     }
 
     /// What is asked for a ray, by its number.
@@ -133,7 +135,7 @@ impl Stream {
             // Whether the input has ended or a signal ended it: what was read is answered.
             light.check()?;
             if end || full {
-                return Ok(full || self.most == 0);
+                return Ok(full || !self.promised);
             }
         }
     }
@@ -280,6 +282,8 @@ mod tests {
         assert_eq!((values.len(), complete), (4, true));
         assert_eq!(log.last().unwrap(), "flush 4");
         let (_, values, complete) = run(|o| (o.width, o.height) = (2, 3), &format!("0 0 0 0 0 0 {}", rays(4)));
+        assert_eq!((values.len(), complete), (5, false));
+        let (_, values, complete) = run(|o| o.height = -1, &rays(5));
         assert_eq!((values.len(), complete), (5, false));
     }
 }

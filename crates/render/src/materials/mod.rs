@@ -110,9 +110,19 @@ impl Material {
         matches!(self, Self::Dielectric(_) | Self::Antimatter(_))
     }
 
+    /// True for what transmits light and turns its surfaces to the viewer.
+    pub(crate) fn is_two_sided(&self) -> bool {
+        matches!(self, Self::Normal(_) | Self::Anisotropic(_) | Self::Glass(_))
+    }
+
     /// True for stand-ins that only scattered light sees.
     pub(crate) fn is_proxy(&self) -> bool {
         matches!(self, Self::Bsdf(m) if m.proxy)
+    }
+
+    /// False if nothing that modifies the material matters, be it another material, which is an error elsewhere.
+    pub(crate) fn takes_finish(&self) -> bool {
+        !matches!(self, Self::Prism(_) | Self::Antimatter(_))
     }
 
     /// Lights and antimatter keep their meaning under the irradiance switch.

@@ -14,7 +14,7 @@ pub(crate) enum Node {
     Pattern(Pattern),
     Texture(Texture),
     Mixture(Mixture),
-    /// An alias without a target: does nothing itself.
+    /// An alias without a target, another name for what follows: does nothing itself.
     Transparent,
     /// Cannot be used; the calculation ends when a ray needs it.
     Unusable(Error),
@@ -92,7 +92,12 @@ impl Modifiers {
     fn alias(&mut self, scene: &Scene, id: ObjectId) -> Link {
         let next = scene.object(id).modifier;
         let target = scene.string_bytes(id, 0).and_then(|name| scene.modifier_before(name, id));
-        if let Some(t) = target {
+        if let Some(mut t) = target {
+            while let (Node::Transparent, _, named) = self.get(t)
+                && named != VOID
+            {
+                t = named;
+            }
             Link { next, ..self.links[t as usize] }
         } else {
             self.nodes.push(Node::Transparent);

@@ -354,8 +354,7 @@ impl<O: Observer> Walk<'_, O> {
         let source = &tracer.scene.sources[candidate.source as usize];
         let direction = candidate.direction;
         // Most rays either arrive or meet something opaque: only what is neither needs a ray to shade with.
-        let plain =
-            !O::ACTIVE && ray.clipped == 0 && ray.next_clipped == 0 && ray.limit >= FAR && source.image.is_none();
+        let plain = !O::ACTIVE && ray.clipped == 0 && ray.next_clipped == 0 && source.image.is_none();
         let mut found = None;
         if plain {
             let mut query = ambit_trace::Ray { origin: ray.point, direction, limit: FAR };
@@ -368,6 +367,10 @@ impl<O: Observer> Walk<'_, O> {
                     Shadow::Blocked(_) => return None,
                     Shadow::Other(hit) => {
                         found = found.or(Some(hit));
+                        // A pattern of a source without a place is told where the last pane is.
+                        if target.is_none() && source.patterned {
+                            break;
+                        }
                         let Some(k) = self.through_pane(&hit) else { break };
                         panes *= k;
                         if panes == Rgb::ZERO {

@@ -27,7 +27,7 @@ pub(crate) fn find_sources(
         let Some(node) = modifiers.light(scene, object.modifier)? else { continue };
         if let Some(source) = source(scene, id, node, modifiers, environment)? {
             // A glow that is not sampled lights something only by interreflection.
-            lit |= source.sampled || !source.glow || indirect;
+            lit |= source.sampled || (source.glow && indirect);
             found.push(source);
         } else {
             lit |= indirect && node.kind == Kind::Glow && node.emission.max_element() > EPSILON as f32;

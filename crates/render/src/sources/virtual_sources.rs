@@ -370,7 +370,6 @@ impl<O: Observer> Walk<'_, O> {
         let relay = child.target.and_then(|t| scene.sources[t as usize].image).map(|i| &scene.relays[i.relay as usize]);
         if !O::ACTIVE
             && child.clipped == 0
-            && child.limit >= FAR
             && let Some(relay) = relay
         {
             let query = ambit_trace::Ray { origin: child.origin, direction: child.direction, limit: FAR };
