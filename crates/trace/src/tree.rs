@@ -1,10 +1,9 @@
 //! The tree: boxes in, eight-wide nodes and lists of leaves out.
 //!
 //! Surfaces with equal boxes are grouped first, since clustering would chain them. Large inputs are cut into portions
-//! by [`crate::split`], which bounds the memory that clustering takes; obvhs clusters each portion, as many at a time as there
-//! are threads (PLOC, Meister and
-//! Bittner 2018, with parallel reinsertion, Meister and Bittner 2018b); if its tree is too deep the splitter does that portion too. Up
-//! to eight surfaces of a kind become a leaf; [`crate::collapse`] makes wide nodes of the rest.
+//! by [`crate::split`], which bounds the memory that clustering takes; obvhs clusters each portion, as many at a
+//! time as there are threads (PLOC, Meister and Bittner 2018, with parallel reinsertion, Meister and Bittner 2018b); if its
+//! tree is too deep the splitter does that portion too. Up to eight surfaces of a kind become a leaf; [`crate::collapse`] makes wide nodes of the rest.
 
 use crate::BuildError;
 use crate::block::LANES;
@@ -270,6 +269,10 @@ impl Part {
 
     /// Adds another's nodes and leaves behind those that are there; `under` is its root.
     fn append(&mut self, part: Self, under: Under) -> Under {
+        if self.nodes.is_empty() && self.blocks.iter().all(Vec::is_empty) {
+            *self = part;
+            return under;
+        }
         let nodes = self.nodes.len() as u32;
         let leaves = [0, 1].map(|kind| self.blocks[kind].len() as u32);
         let moved = |child: Child| {
