@@ -58,7 +58,9 @@ impl<O: Observer> Walk<'_, O> {
             Answer::Fallback(v) => ray.value += coefficient * v,
             Answer::Miss => {
                 let k = ray.throughput * ray.attenuation() * coefficient;
-                self.misses.push(Miss { coefficient: k, query });
+                // Chance keeps off edges what hemispheres meet; what the eye looks at may be there by design.
+                let position = if ray.depth == 0 { self.off_edges(ray, normal) } else { query.position };
+                self.misses.push(Miss { coefficient: k, query: Query { position, ..query } });
             }
             Answer::Uncached => self.hemisphere(ray, coefficient, normal, shading, transmitted),
         }

@@ -3,6 +3,7 @@
 
 mod antimatter;
 mod braid;
+mod corner;
 mod error;
 mod fingerprint;
 mod indirect;
