@@ -85,7 +85,6 @@ class Outside:
             raise RuntimeError(f"{side.name}: render.sh: status {done.returncode}: {lines[0] if lines else ''}")
         return work / "pic.hdr"
 
-
     def caught(self, theirs, work):
         """Its folder, its octree, compiled by `theirs`, and what its script tells rpict but for size and options."""
         catch = work / "catch"

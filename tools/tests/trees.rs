@@ -88,6 +88,18 @@ fn rays_of_hemispheres_are_children_of_the_ray_that_asked() {
 }
 
 #[test]
+fn hemispheres_beside_edges_are_children_too() {
+    let folder = TempDir::new().unwrap();
+    // A floor and a wall that meet where the second ray ends.
+    let scene = "void plastic m 0 0 5 .5 .5 .5 0 0\nm polygon f 0 0 12 -1 -1 0 1 -1 0 1 1 0 -1 1 0\n\
+                 m polygon w 0 0 12 -1 1 0 1 1 0 1 1 2 -1 1 2\n";
+    let octree = octree(&folder, scene);
+    let lines = |ray: &str| rtrace(&octree, "-w- -otv -ab 1 -aa .2 -ad 64 -as 0", ray).lines().count();
+    assert_eq!(lines("0 0 1 0 .5 -1"), 65);
+    assert_eq!(lines("0 0 1 0 1 -1"), 65);
+}
+
+#[test]
 fn hemispheres_are_followed_in_all_bins() {
     let folder = tempfile::tempdir().unwrap();
     let spectral =

@@ -121,6 +121,8 @@ pub(crate) fn finish<O>(
     let frame = plan.frame();
     let (s, c) = shape.turn.sin_cos();
     let u = frame.u * c + frame.v * s;
+    // Where bounces are not told apart there is nothing to keep.
+    let told = lights.iter().any(|light| light.late != Light::NONE.late);
     let record = Record {
         position: query.position,
         normal: query.normal,
@@ -133,7 +135,7 @@ pub(crate) fn finish<O>(
         corral: corral(grid, |c| plan.local(c), |c| cells[c].nearness, reach, smoothing, shape.turn),
         value: lights[0].value,
         further: lights[1..].iter().map(|light| light.value).collect(),
-        late: lights.iter().map(|light| light.late).collect(),
+        late: lights.iter().filter(|_| told).map(|light| light.late).collect(),
     };
     if record.is_plausible() {
         let answer = answer(&record, query);

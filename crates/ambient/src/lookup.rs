@@ -25,9 +25,9 @@ const ROUNDING: f64 = 1e-9;
 /// Limits of the factor by which the mean gradient moves what records extrapolate half the way: what one record comes to.
 const MIN_MOVE: f32 = 2.0 * MIN_FACTOR / (MIN_FACTOR + MAX_FACTOR);
 const MAX_MOVE: f32 = 2.0;
-/// What a record of a file counts for towards the weight that is asked for. The view that left it there had that weight at
-/// its own pixels; between them it is less, and a view from elsewhere would thicken what is thick enough: of half the
-/// records that it adds the error is hardly smaller.
+/// What a record of a file counts for towards the weight that is asked for. The view that left it there has that weight at
+/// its own pixels and less between them, so that a view from elsewhere would thicken what is thick enough. Half of the
+/// records that it would add do little for the error.
 const FOUND: f32 = 3.0;
 /// Queries this near to a corralled record, as a fraction of its reach, need no probe: the azimuth of so short a vector
 /// means nothing, and probing would reject a record at its own place.

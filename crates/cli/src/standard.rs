@@ -27,23 +27,27 @@ fn look() {
 fn ignored_mask() -> Option<u64> {
     use rustix::fs::{Mode, OFlags, open};
     let file = open("/proc/self/status", OFlags::RDONLY | OFlags::CLOEXEC, Mode::empty()).ok()?;
-    // Groups are listed before it: there is room for a thousand with long numbers.
-    let mut bytes = [0; 1 << 14];
-    let mut length = 0;
-    while length < bytes.len() {
-        match rustix::io::read(&file, &mut bytes[length..]).ok()? {
-            0 => break,
-            n => length += n,
-        }
-    }
-    mask_in(&bytes[..length])
+    mask_in(|block| rustix::io::read(&file, block).ok())
 }
 
-/// The mask of ignored signals in the text of `/proc/self/status`.
-fn mask_in(status: &[u8]) -> Option<u64> {
-    let mut lines = status.split(|&b| b == b'\n');
-    let mask = lines.find_map(|line| line.strip_prefix(b"SigIgn:"))?;
-    u64::from_str_radix(std::str::from_utf8(mask).ok()?.trim(), 16).ok()
+/// The mask of ignored signals in the text of `/proc/self/status`, which `read` gives piece by piece. Groups, of which
+/// there may be thousands, are listed before it on one line: of every line only the beginning is kept.
+fn mask_in(mut read: impl FnMut(&mut [u8]) -> Option<usize>) -> Option<u64> {
+    let (mut block, mut line, mut length) = ([0; 4096], [0; 64], 0);
+    loop {
+        let count = read(&mut block).filter(|&count| count > 0)?;
+        for &byte in &block[..count] {
+            if byte != b'\n' {
+                line.iter_mut().skip(length).take(1).for_each(|place| *place = byte);
+                length = line.len().min(length + 1);
+                continue;
+            }
+            if let Some(mask) = line[..length].strip_prefix(b"SigIgn:") {
+                return u64::from_str_radix(std::str::from_utf8(mask).ok()?.trim(), 16).ok();
+            }
+            length = 0;
+        }
+    }
 }
 
 /// True if the parent had this signal ignored when the process began.
@@ -114,11 +118,25 @@ pub fn answer(text: &[u8]) {
 mod tests {
     use super::mask_in;
 
+    /// What is found in a text that comes in pieces of such a length.
+    fn found(text: &str, piece: usize) -> Option<u64> {
+        let mut left = text.as_bytes();
+        mask_in(|block| {
+            let count = piece.min(left.len()).min(block.len());
+            block[..count].copy_from_slice(&left[..count]);
+            left = &left[count..];
+            Some(count)
+        })
+    }
+
     #[test]
     fn the_mask_is_found_behind_any_number_of_groups() {
-        let groups = "100000 ".repeat(2000);
-        let status = format!("Name:\tx\nGroups:\t{groups}\nSigBlk:\t0000000000000001\nSigIgn:\t0000000000001000\n");
-        assert_eq!(mask_in(status.as_bytes()), Some(1 << 12));
-        assert_eq!(mask_in(b"SigBlk:\t0000000000000001\n"), None);
+        for groups in [0, 1, 10_000] {
+            let groups = "4294967295 ".repeat(groups);
+            let status = format!("Name:\tx\nGroups:\t{groups}\nSigBlk:\t0000000000000001\nSigIgn:\t0000000000001000\n");
+            assert_eq!(found(&status, 4096), Some(1 << 12));
+            assert_eq!(found(&status, 7), Some(1 << 12));
+        }
+        assert_eq!(found("SigBlk:\t0000000000000001\n", 4096), None);
     }
 }

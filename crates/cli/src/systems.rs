@@ -77,7 +77,8 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
                 Ok(())
             }),
             "the weight that irradiance values around a point must add up to before it does without one of its own, for what \
-             is seen directly; 0 (as in Radiance, whose pixels come in another order: any) to 0.9; .3 unless given",
+             is seen directly; those of ambient files count threefold; 0 (as in Radiance, whose pixels come in another order: \
+             any) to 0.9; .3 unless given",
         )
         .values("WEIGHT"),
         Row::new(

@@ -10,39 +10,42 @@ use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{DVec3, EPSILON};
 
-/// How far off an edge records are taken, in least spacings of records: little to them, much to ε.
-const OFF: f64 = 0.01;
-/// The same in ε, at least.
-const OFF_EPSILONS: f64 = 16.0;
-/// Surfaces as near as this to a point stand on it, in ε: rays from it may miss them.
-const ON_EPSILONS: f64 = 2.0;
+/// How far off an edge records are taken, in ε: far enough for hemispheres to meet what stands there, and nothing to a scene.
+const OFF: f64 = 16.0 * EPSILON;
+/// Surfaces whose plane is as near as this to a point stand on it: rays from it may miss them.
+const ON: f64 = 2.0 * EPSILON;
 /// The least cosine between the ray and a surface whose side it is on.
 const LEAST_COSINE: f64 = 1e-6;
 
 impl<O: Observer> Walk<'_, O> {
-    /// The hit of `ray`, moved off what stands on it within the surface whose `normal` is on the side to be lit.
-    #[cold]
-    pub(crate) fn off_edges(&mut self, ray: &Ray<'_>, normal: DVec3) -> DVec3 {
-        let limits = self.cache.limits();
-        let off = (OFF * limits.accuracy * limits.min_radius).max(OFF_EPSILONS * EPSILON);
+    /// Where to ask for the irradiance of a hit, `normal` being on the side to be lit. Chance keeps off edges what
+    /// hemispheres meet; what the eye looks at may be there by design.
+    #[inline]
+    pub(crate) fn asked_at(&mut self, ray: &Ray<'_>, normal: DVec3) -> DVec3 {
+        if ray.depth == 0 { self.off_edges(ray, normal) } else { ray.point }
+    }
+
+    /// The hit of `ray`, moved off what stands on it. What leans to the surface by less than 45° is not found.
+    #[inline(never)]
+    fn off_edges(&mut self, ray: &Ray<'_>, normal: DVec3) -> DVec3 {
         let u = normal.any_orthonormal_vector();
-        let mut place = ray.point;
-        for tangent in [u, normal.cross(u)] {
+        let mut moves = [DVec3::ZERO; 2];
+        for (place, tangent) in moves.iter_mut().zip([u, normal.cross(u)]) {
             // Over the point, from one side to the other.
-            let over = ambit_trace::Ray {
-                origin: ray.point + (normal + tangent) * off,
-                direction: -tangent,
-                limit: 2.0 * off,
-            };
+            let origin = ray.point + (normal + tangent) * OFF;
+            let over = ambit_trace::Ray { origin, direction: -tangent, limit: 2.0 * OFF };
             self.work.rays += 1;
             let Some(hit) = self.tracer.scene.world.nearest(&over) else { continue };
+            let met = over.origin + over.direction * hit.distance;
             let facing = ray.direction.dot(hit.normal);
-            if (hit.distance - off).abs() <= ON_EPSILONS * EPSILON && facing.abs() > LEAST_COSINE {
+            if (met - ray.point).dot(hit.normal).abs() <= ON && facing.abs() > LEAST_COSINE {
                 // On the side that the ray comes from.
                 let away = hit.normal * -facing.signum();
-                place += (away - normal * away.dot(normal)).normalize_or_zero() * off;
+                *place = (away - normal * away.dot(normal)).normalize_or_zero() * OFF;
             }
         }
-        place
+        // Both rays may have met the same surface.
+        let [a, b] = moves;
+        ray.point + a + if (a - b).length() > ON { b } else { DVec3::ZERO }
     }
 }

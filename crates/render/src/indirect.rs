@@ -44,7 +44,9 @@ impl<O: Observer> Walk<'_, O> {
             origin: Origin::of(ray, transmitted, coefficient.max_element().min(1.0)),
         };
         if O::ACTIVE {
-            self.follow_hemisphere(ray, &query, coefficient);
+            // What was sampled here was sampled beside an edge.
+            let position = self.asked_at(ray, normal);
+            self.follow_hemisphere(ray, &Query { position, ..query }, coefficient);
         }
         match self.cache.ask(self.tracer, &query) {
             Answer::Fallback(_) if self.is_endless() => self.survive(ray, coefficient, query),
@@ -58,8 +60,7 @@ impl<O: Observer> Walk<'_, O> {
             Answer::Fallback(v) => ray.value += coefficient * v,
             Answer::Miss => {
                 let k = ray.throughput * ray.attenuation() * coefficient;
-                // Chance keeps off edges what hemispheres meet; what the eye looks at may be there by design.
-                let position = if ray.depth == 0 { self.off_edges(ray, normal) } else { query.position };
+                let position = self.asked_at(ray, normal);
                 self.misses.push(Miss { coefficient: k, query: Query { position, ..query } });
             }
             Answer::Uncached => self.hemisphere(ray, coefficient, normal, shading, transmitted),
