@@ -56,6 +56,11 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         processors?;
     }
     options.rendering.check()?;
+    let (output, spectrum) = (options.common.output, &options.rendering.options.spectrum);
+    if !spectrum.shows_colour() && !output.bins() && Converter::new(output, spectrum).channels() == 3 {
+        session.messages.warn("spectral range incompatible with color output");
+    }
+    session.attach(&options.common)?;
     let Some(octree) = session.octree.clone() else {
         session.prepare(&options.common)?;
         return Err(Failure::user("missing octree argument").into());
@@ -97,9 +102,6 @@ impl Job {
         let spec = OutputSpec::parse(&options.fields)?;
         let spectrum = &options.rendering.options.spectrum;
         let conversion = Converter::new(options.common.output, spectrum);
-        if !spectrum.shows_colour() && !options.common.output.bins() && conversion.channels() == 3 {
-            session.messages.warn("spectral range incompatible with color output");
-        }
         if options.format == OutputFormat::Colour {
             if spec.tree.is_some() || !matches!(spec.fields[..], [Field::Value | Field::Mirrored | Field::Unmirrored]) {
                 return Err(Failure::user("color format only with -ov, -or, -ox").into());
