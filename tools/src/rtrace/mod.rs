@@ -16,11 +16,11 @@ use ambit_cli::{
     About, COMMON_FEATURES, Failure, Features, Field, OutputFormat, OutputSpec, RAY_FEATURES, RayOptions,
     StandardOutput, ray_table,
 };
-use input::{Patient, RayReader};
+use input::{Awaited, Patient, RayReader};
 use record::RecordWriter;
 use std::ffi::OsString;
 use std::fs::File;
-use std::io::{BufReader, Read, Write, stdin};
+use std::io::{Read, Write, stdin};
 use std::os::fd::AsFd;
 use std::process::ExitCode;
 use tree::TreeWriter;
@@ -145,7 +145,7 @@ impl Job {
         session: &Session,
         options: &RayOptions,
         scene: &mut Scene<'_>,
-        input: impl Read,
+        input: impl Awaited,
     ) -> Result<(), Stop> {
         let mut out = StandardOutput::new();
         let picture = (options.width > 0 && options.height > 0).then_some((options.width, options.height));
@@ -161,7 +161,7 @@ impl Job {
         written.map_err(|e| Stop::writing("write error", &e))?;
         let records = RecordWriter::new(&self.spec.fields, &self.conversion, options);
         let tree = self.spec.tree.as_ref().map(|t| TreeWriter::new(t, &self.conversion, options));
-        let reader = RayReader::new(BufReader::with_capacity(1 << 16, input), options.input);
+        let reader = RayReader::new(input, options.input);
         let complete =
             stream::Stream::new(options, &self.spec).run(reader, &records, tree.as_ref(), scene, &mut out)?;
         if !complete {
