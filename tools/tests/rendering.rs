@@ -397,3 +397,14 @@ fn man_pages_and_help_are_there() {
         assert!(String::from_utf8_lossy(&answer.stdout).starts_with(&format!("Usage: {name} ")), "{name}");
     }
 }
+
+/// As in `rpict -z >(gzip > distances.gz)`.
+#[test]
+fn distances_go_into_a_pipe() {
+    let bench = Bench::new();
+    let piped = bench.rpict("-w -x 16 -y 16 -z /dev/stderr scene.oct", b"");
+    let filed = bench.rpict("-w -x 16 -y 16 -z file.z scene.oct", b"");
+    assert!(piped.status.success() && filed.status.success());
+    assert_eq!(piped.stderr.len(), 16 * 16 * 4);
+    assert_eq!(piped.stderr, std::fs::read(bench.path("file.z")).unwrap());
+}
