@@ -114,7 +114,8 @@ impl<R: Awaited> RayReader<R> {
         }
         let quote = matches!(first, b'"' | b'\'').then_some(first);
         let mut word = String::new();
-        if quote.is_none() {
+        // Bytes of zero are passed over: every second one of UTF-16.
+        if quote.is_none() && first != 0 {
             word.push(char::from(first));
         }
         while word.len() < LONGEST_WORD {
@@ -126,7 +127,9 @@ impl<R: Awaited> RayReader<R> {
             if Some(next) == quote {
                 break;
             }
-            word.push(char::from(next));
+            if next != 0 {
+                word.push(char::from(next));
+            }
         }
         Some(word)
     }
@@ -174,6 +177,8 @@ mod tests {
             [[1., 2., 3., 4., 5., 6.], [7., 8., 9., 10., 11., 0.5]]
         );
         assert_eq!(rays(""), [[0.0; 6]; 0]);
+        let wide: String = "1 2 .3 4 5 6\n".chars().flat_map(|c| [c, '\0']).collect();
+        assert_eq!(rays(&wide), [[1., 2., 0.3, 4., 5., 6.]]);
     }
 
     #[test]
