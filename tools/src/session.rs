@@ -103,6 +103,8 @@ pub(crate) struct Session {
     pub(crate) flags: Vec<&'static str>,
     /// Octree argument.
     pub(crate) octree: Option<String>,
+    /// What follows it.
+    excess: Vec<String>,
     /// Where auxiliary files are.
     pub(crate) search: SearchPath,
     /// Prints messages.
@@ -132,6 +134,7 @@ impl Session {
             words: Vec::new(),
             flags: Vec::new(),
             octree: None,
+            excess: Vec::new(),
             search,
             meter: Arc::new(meter),
             stop: Arc::new(AtomicBool::new(false)),
@@ -187,8 +190,8 @@ impl Session {
             ambit_base::Notify::warn(&self.messages, &notice);
         }
         match result? {
-            Scan::Run { octree, words, flags } => {
-                (self.octree, self.words, self.flags) = (octree, words, flags);
+            Scan::Run { octree, words, flags, excess } => {
+                (self.octree, self.words, self.flags, self.excess) = (octree, words, flags, excess);
                 return Ok(true);
             }
             Scan::Version => answer(format!("{VERSION}\n").as_bytes()),
@@ -204,19 +207,28 @@ impl Session {
         Ok(false)
     }
 
-    /// Sets up what comes before the work: error file and threads; refuses what is not served.
-    pub(crate) fn prepare(&mut self, common: &Common) -> Result<(), Stop> {
-        if common.persist.is_some() && self.octree.is_none() {
-            // No program stays behind that could be attached to: every run renders by itself.
-            return Err(Failure::unsupported("persist mode (-P, -PP) without an octree is").into());
-        }
+    /// Opens the error file, which takes all messages from here on: those about values of options and about the view
+    /// come before, those about what does not go together after it.
+    pub(crate) fn attach(&self, common: &Common) -> Result<(), Stop> {
         if let Some(file) = &common.error_file {
-            let words = self.words.iter().chain(&self.octree).map(|w| bytes_of(w));
+            let words = self.words.iter().chain(&self.octree).chain(&self.excess).map(|w| bytes_of(w));
             let command = command_line(&bytes_of(&self.program), words);
             if attach_error_file(file, &command).is_err() {
                 // As Radiance: without a word.
                 return Err(Stop::Failure(Failure { class: ambit_cli::Class::System, text: String::new() }));
             }
+        }
+        match &self.octree {
+            Some(octree) if !self.excess.is_empty() => Err(Failure::at(octree).into()),
+            _ => Ok(()),
+        }
+    }
+
+    /// Sets up what comes before the work: threads; refuses what is not served.
+    pub(crate) fn prepare(&mut self, common: &Common) -> Result<(), Stop> {
+        if common.persist.is_some() && self.octree.is_none() {
+            // No program stays behind that could be attached to: every run renders by itself.
+            return Err(Failure::unsupported("persist mode (-P, -PP) without an octree is").into());
         }
         Ok(start_threads(common.threads())?)
     }

@@ -397,3 +397,45 @@ fn man_pages_and_help_are_there() {
         assert!(String::from_utf8_lossy(&answer.stdout).starts_with(&format!("Usage: {name} ")), "{name}");
     }
 }
+
+/// As in `rpict -z >(gzip > distances.gz)`.
+#[test]
+fn distances_go_into_a_pipe() {
+    let bench = Bench::new();
+    let piped = bench.rpict("-w -x 16 -y 16 -z /dev/stderr scene.oct", b"");
+    let filed = bench.rpict("-w -x 16 -y 16 -z file.z scene.oct", b"");
+    assert!(piped.status.success() && filed.status.success());
+    assert_eq!(piped.stderr.len(), 16 * 16 * 4);
+    assert_eq!(piped.stderr, std::fs::read(bench.path("file.z")).unwrap());
+}
+
+/// Programs that turn pictures (pflip, protate) change the order of pixels in their resolution string.
+#[test]
+fn pictures_that_were_turned_are_not_gone_on_with() {
+    let bench = Bench::new();
+    let whole = bench.rpict("-w -vh 90 -vv 75 -x 20 -y 20 scene.oct", b"").stdout;
+    let at = whole.windows(4).position(|w| w == b"\n-Y ").expect("a resolution string") + 1;
+    let (height, width) = (15, 20);
+    assert!(whole[at..].starts_with(format!("-Y {height:8} +X {width:8}\n").as_bytes()));
+    for (turned, width, height) in
+        [("-Y       15 -X       20", 20, 15), ("+Y       15 +X       20", 20, 15), ("+X       20 +Y       15", 15, 20)]
+    {
+        let file = [&whole[..at], turned.as_bytes(), &whole[at + turned.len()..]].concat();
+        std::fs::write(bench.path("turned.hdr"), file).unwrap();
+        let done = bench.rpict("-r turned.hdr -o new.hdr scene.oct", b"");
+        assert!(done.status.success());
+        let told = String::from_utf8(done.stderr).unwrap();
+        assert!(told.contains("bad recover file \"turned.hdr\" - not removed"), "{told}");
+        assert!(bench.path("turned.hdr").exists());
+        let size = format!("\n-Y {height:8} +X {width:8}\n");
+        let new = std::fs::read(bench.path("new.hdr")).unwrap();
+        assert!(new.windows(size.len()).any(|w| w == size.as_bytes()), "{turned}");
+        std::fs::remove_file(bench.path("new.hdr")).unwrap();
+    }
+    std::fs::write(bench.path("other.hdr"), &whole).unwrap();
+    let done = bench.rpict("-pXYZ -r other.hdr scene.oct", b"");
+    assert!(String::from_utf8_lossy(&done.stderr).contains("bad recover file \"other.hdr\" - not removed"));
+    let pixels = |picture: &[u8]| picture[picture.windows(4).position(|w| w == b"\n-Y ").unwrap()..].to_vec();
+    let anew = bench.rpict("-w -pXYZ -vh 90 -vv 75 -x 20 -y 20 scene.oct", b"").stdout;
+    assert_eq!(pixels(&done.stdout), pixels(&anew));
+}

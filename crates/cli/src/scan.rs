@@ -7,6 +7,9 @@ use crate::table::{Place, Row};
 use ambit_file::{WORD_LIMIT, bytes_of, integer, real, split_words, text_of};
 use std::collections::VecDeque;
 
+/// More expansions of `@FILE` and `$VARIABLE` than any command line needs: what goes beyond names itself.
+const EXPANSION_LIMIT: usize = 10_000;
+
 /// The words of a command line that have not been read yet, and those that have.
 pub struct Arguments<'a> {
     rest: VecDeque<String>,
@@ -14,6 +17,8 @@ pub struct Arguments<'a> {
     read: Vec<String>,
     /// Flags of the rows that were read.
     flags: Vec<&'static str>,
+    /// Words that were expanded.
+    expansions: usize,
     outside: &'a dyn Outside,
 }
 
@@ -28,6 +33,8 @@ pub enum Scan {
         words: Vec<String>,
         /// Flags of the rows that were read, in order.
         flags: Vec<&'static str>,
+        /// What comes after the octree, where nothing may. It is refused once the error file is open, as Radiance does.
+        excess: Vec<String>,
     },
     /// `-version`, `--version`.
     Version,
@@ -52,7 +59,8 @@ pub fn scan<S>(
     settings: &mut S,
     outside: &dyn Outside,
 ) -> Result<Scan, Failure> {
-    let mut words = Arguments { rest: arguments.into_iter().collect(), read: Vec::new(), flags: Vec::new(), outside };
+    let rest = arguments.into_iter().collect();
+    let mut words = Arguments { rest, read: Vec::new(), flags: Vec::new(), expansions: 0, outside };
     while let Some(word) = words.expanded()? {
         match word.as_str() {
             "-version" | "--version" => return Ok(Scan::Version),
@@ -63,8 +71,7 @@ pub fn scan<S>(
             option if option.starts_with('-') => words.option(option, table, settings)?,
             _ => {
                 words.read.pop();
-                let alone = words.rest.is_empty();
-                return if alone { Ok(words.run(Some(word))) } else { Err(Failure::at(&word)) };
+                return Ok(words.run(Some(word)));
             }
         }
     }
@@ -73,12 +80,20 @@ pub fn scan<S>(
 
 impl Arguments<'_> {
     fn run(self, octree: Option<String>) -> Scan {
-        Scan::Run { octree, words: self.read, flags: self.flags }
+        Scan::Run { octree, words: self.read, flags: self.flags, excess: self.rest.into() }
     }
 
     /// The next word where `@FILE` and `$VARIABLE` stand for words.
     fn expanded(&mut self) -> Result<Option<String>, Failure> {
         while let Some(word) = self.rest.pop_front() {
+            if word.starts_with(['@', '$']) {
+                self.expansions += 1;
+                if self.expansions > EXPANSION_LIMIT {
+                    return Err(Failure::user(format!(
+                        "'{word}' stands for itself, or expands more than {EXPANSION_LIMIT} times"
+                    )));
+                }
+            }
             let found = if let Some(file) = word.strip_prefix('@') {
                 self.outside.words(file)?
             } else if let Some(name) = word.strip_prefix('$') {

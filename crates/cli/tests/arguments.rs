@@ -19,6 +19,8 @@ impl Outside for World {
     fn words(&self, file: &str) -> Result<Vec<String>, Failure> {
         match file {
             "more" => Ok(["-ad", "99"].map(String::from).to_vec()),
+            "octree" => Ok(vec!["-ab".into(), "1".into(), "scene.oct".into()]),
+            "itself" => Ok(vec!["@itself".into(); 2]),
             "four" => Ok(vec!["4".into()]),
             _ => Err(Failure::system(format!("cannot expand '@{file}'"), &io::Error::from_raw_os_error(2))),
         }
@@ -136,8 +138,6 @@ const ERRORS: &[(&str, &str)] = &[
     ("-lrx", "-lrx"),
     ("-sj 1.0", "-sj"),
     ("-de .1", "-de"),
-    ("scene.oct -ab 1", "scene.oct"),
-    ("a.oct b.oct", "a.oct"),
     ("-ab 1 scene.oct", "~"),
 ];
 
@@ -180,8 +180,22 @@ fn words_are_expanded_where_options_stand() {
     assert_eq!(words.join(" "), "-ab 2 -ad 99 -aa .3 -te @four");
     let ambient = &options.rendering.options.ambient;
     assert_eq!((ambient.bounces, ambient.divisions, ambient.accuracy), (2, 99, 0.3));
-    let read = Scan::Run { octree: None, words: words_of("-te room.oct"), flags: vec!["te"] };
+    let read = Scan::Run { octree: None, words: words_of("-te room.oct"), flags: vec!["te"], excess: Vec::new() };
     assert_eq!(rtrace("-te room.oct").1.unwrap(), read);
+}
+
+#[test]
+fn what_follows_the_octree_is_left_for_the_error_file() {
+    for (line, after) in [("scene.oct -ab 1", "-ab 1"), ("scene.oct b.oct", "b.oct"), ("@octree -h", "-h")] {
+        let Ok(Scan::Run { octree, excess, .. }) = rtrace(line).1 else { panic!("{line}") };
+        assert_eq!((octree.as_deref(), excess.join(" ").as_str()), (Some("scene.oct"), after));
+    }
+}
+
+#[test]
+fn words_that_stand_for_themselves_are_named() {
+    let text = rtrace("@itself room.oct").1.unwrap_err().to_string();
+    assert!(text.starts_with("fatal - '@itself' stands for itself"), "{text}");
 }
 
 fn words_of(line: &str) -> Vec<String> {

@@ -124,8 +124,10 @@ impl Picture<'_> {
         output.head(&head)?;
         if let Some(r) = &frame.recovered {
             output.codes(&r.lines)?;
-            std::fs::remove_file(&r.file)
-                .map_err(|e| Failure::system(format!("cannot remove \"{}\"", name_of(&r.file)), &e))?;
+            if let Some(file) = &r.file {
+                std::fs::remove_file(file)
+                    .map_err(|e| Failure::system(format!("cannot remove \"{}\"", name_of(file)), &e))?;
+            }
         }
         if empty {
             self.session.messages.warn("empty output picture");

@@ -68,6 +68,11 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     if !spectrum.shows_colour() {
         return Err(Failure::user("unsupported spectral sampling").into());
     }
+    if options.sequence <= 0 && options.recover.is_none() {
+        // A recovered picture brings its own view.
+        options.view.set_up().map_err(|e| Failure::user(e.to_string()))?;
+    }
+    session.attach(&options.common)?;
     // Reports end with what can be counted at no great cost, where there is a cache.
     options.rendering.counts = options.report > 0 && options.rendering.options.ambient.asks();
     if options.spacing > GREATEST_SPACING {
@@ -95,9 +100,6 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
             return Err(Failure::user("missing octree argument").into());
         }
         sequence::check(&options)?;
-    } else if options.recover.is_none() {
-        // A recovered picture brings its own view.
-        options.view.set_up().map_err(|e| Failure::user(e.to_string()))?;
     }
     session.prepare(&options.common)?;
     let source = source(session)?;

@@ -38,7 +38,10 @@ impl PictureOutput {
                 let mut file =
                     OpenOptions::new().write(true).create(true).truncate(false).open(path_of(name)).map_err(failed)?;
                 let offset = u64::from(done) * u64::from(frame.width) * size_of::<f32>() as u64;
-                file.seek(SeekFrom::Start(offset)).map_err(failed)?;
+                // A pipe will do as long as it is written from its beginning.
+                if offset > 0 {
+                    file.seek(SeekFrom::Start(offset)).map_err(failed)?;
+                }
                 Some(file)
             }
         };

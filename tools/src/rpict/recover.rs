@@ -3,15 +3,15 @@
 use crate::session::{Session, Stop};
 use ambit_base::Notify;
 use ambit_cli::Failure;
-use ambit_file::{PictureReader, PixelSpace, View, name_of, path_of};
+use ambit_file::{Orientation, PictureReader, PixelSpace, View, name_of, path_of};
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// What an interrupted picture still has.
 pub(crate) struct Recovered {
-    /// The file, to be removed when its lines have been copied.
-    pub(crate) file: PathBuf,
+    /// The file, to be removed when its lines have been copied; none if they cannot be.
+    pub(crate) file: Option<PathBuf>,
     /// Its view.
     pub(crate) view: View,
     /// Width and height.
@@ -68,17 +68,23 @@ pub(crate) fn read(session: &Session, file: PathBuf, space: PixelSpace) -> Optio
     let mut view = View::default();
     let reader = PictureReader::new(BufReader::new(open), &name)
         .ok()
-        .filter(|reader| reader.space == space && view.apply_header(&reader.header, &session.program) > 0);
+        .filter(|reader| view.apply_header(&reader.header, &session.program) > 0);
     let Some(mut reader) = reader else {
         warn(format!("cannot recover view parameters from \"{name}\""));
         warn(format!("bad recover file \"{name}\" - not removed"));
         return None;
     };
-    let size = (reader.resolution.width, reader.resolution.height);
+    let resolution = reader.resolution;
+    let size = (resolution.scanline_length(), resolution.scanlines());
     let mut lines = Vec::new();
+    if resolution.orientation != Orientation::TEXT || reader.space != space {
+        // Turned or mirrored since it was made, or in other colours: its view and its size serve, its lines do not.
+        warn(format!("bad recover file \"{name}\" - not removed"));
+        return Some(Recovered { file: None, view, size, lines });
+    }
     // A line that was cut off is no line.
     while let Ok(Some(line)) = reader.next_codes() {
         lines.push(line.to_vec());
     }
-    Some(Recovered { file, view, size, lines })
+    Some(Recovered { file: Some(file), view, size, lines })
 }

@@ -2,10 +2,9 @@
 
 use ambit_base::DVec3;
 use ambit_cli::InputFormat;
-use ambit_file::real;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
-use std::io::{self, BufRead, Read};
+use std::io::{self, BufRead, BufReader, Read};
 use std::os::fd::AsFd;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -29,6 +28,24 @@ impl<R> Patient<R> {
     }
 }
 
+/// Input that knows whether its next bytes have to be waited for.
+pub(crate) trait Awaited: Read {
+    /// True if there are none yet. At its end there is nothing to wait for.
+    fn waits(&self) -> bool;
+}
+
+impl<R: Read + AsFd> Awaited for Patient<R> {
+    fn waits(&self) -> bool {
+        poll(&mut [PollFd::new(&self.input, PollFlags::IN)], Some(&Timespec::default())) == Ok(0)
+    }
+}
+
+impl Awaited for &[u8] {
+    fn waits(&self) -> bool {
+        false
+    }
+}
+
 impl<R: Read + AsFd> Read for Patient<R> {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         loop {
@@ -44,16 +61,26 @@ impl<R: Read + AsFd> Read for Patient<R> {
     }
 }
 
+/// Bytes of input that are taken at once.
+const BUFFER: usize = 1 << 16;
+
 /// Reads rays.
 pub(crate) struct RayReader<R> {
-    input: R,
+    input: BufReader<R>,
     format: InputFormat,
 }
 
-impl<R: BufRead> RayReader<R> {
+impl<R: Awaited> RayReader<R> {
     /// Rays of a format from a stream.
     pub(crate) fn new(input: R, format: InputFormat) -> Self {
-        Self { input, format }
+        Self { input: BufReader::with_capacity(BUFFER, input), format }
+    }
+
+    /// True if nothing of what was read is left, and the next ray, or the end, has to be waited for.
+    pub(crate) fn waits(&self) -> bool {
+        let left = self.input.buffer();
+        let spent = left.is_empty() || self.format == InputFormat::Ascii && left.iter().all(|&b| is_space(b));
+        spent && self.input.get_ref().waits()
     }
 
     /// Origin and direction of the next ray. `None` at the end of the input, or where it stops to be numbers; an
@@ -62,7 +89,7 @@ impl<R: BufRead> RayReader<R> {
         let mut v = [0.0; 6];
         for x in &mut v {
             *x = match self.format {
-                InputFormat::Ascii => real(&self.word()?)?,
+                InputFormat::Ascii => number(&self.word()?)?,
                 InputFormat::Float => {
                     let mut bytes = [0; 4];
                     self.input.read_exact(&mut bytes).ok()?;
@@ -87,7 +114,8 @@ impl<R: BufRead> RayReader<R> {
         }
         let quote = matches!(first, b'"' | b'\'').then_some(first);
         let mut word = String::new();
-        if quote.is_none() {
+        // Bytes of zero are passed over: every second one of UTF-16.
+        if quote.is_none() && first != 0 {
             word.push(char::from(first));
         }
         while word.len() < LONGEST_WORD {
@@ -99,7 +127,9 @@ impl<R: BufRead> RayReader<R> {
             if Some(next) == quote {
                 break;
             }
-            word.push(char::from(next));
+            if next != 0 {
+                word.push(char::from(next));
+            }
         }
         Some(word)
     }
@@ -122,6 +152,11 @@ impl<R: BufRead> RayReader<R> {
     }
 }
 
+/// A number as options write it, or one too large to be held, which keeps its place in the count of rays.
+fn number(word: &str) -> Option<f64> {
+    word.parse().ok().filter(|_| word.contains(|c: char| c.is_ascii_digit()))
+}
+
 fn is_space(byte: u8) -> bool {
     byte.is_ascii_whitespace() || byte == 0x0b
 }
@@ -142,6 +177,8 @@ mod tests {
             [[1., 2., 3., 4., 5., 6.], [7., 8., 9., 10., 11., 0.5]]
         );
         assert_eq!(rays(""), [[0.0; 6]; 0]);
+        let wide: String = "1 2 .3 4 5 6\n".chars().flat_map(|c| [c, '\0']).collect();
+        assert_eq!(rays(&wide), [[1., 2., 0.3, 4., 5., 6.]]);
     }
 
     #[test]
@@ -149,6 +186,11 @@ mod tests {
         for bad in ["nan", "inf", "0x2", "foo", "#", "1,", "1d0"] {
             assert_eq!(rays(&format!("1 2 3 4 5 6 7 8 9 {bad} 1 1 1 2 3 4 5 6")).len(), 1, "{bad}");
         }
+    }
+
+    #[test]
+    fn numbers_that_are_too_large_count() {
+        assert_eq!(rays("1 2 1e400 4 5 6 -1e999 1 2 3 4 5")[1][0], f64::NEG_INFINITY);
     }
 
     #[test]

@@ -16,11 +16,11 @@ use ambit_cli::{
     About, COMMON_FEATURES, Failure, Features, Field, OutputFormat, OutputSpec, RAY_FEATURES, RayOptions,
     StandardOutput, ray_table,
 };
-use input::{Patient, RayReader};
+use input::{Awaited, Patient, RayReader};
 use record::RecordWriter;
 use std::ffi::OsString;
 use std::fs::File;
-use std::io::{BufReader, Read, Write, stdin};
+use std::io::{Read, Write, stdin};
 use std::os::fd::AsFd;
 use std::process::ExitCode;
 use tree::TreeWriter;
@@ -56,6 +56,11 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         processors?;
     }
     options.rendering.check()?;
+    let (output, spectrum) = (options.common.output, &options.rendering.options.spectrum);
+    if !spectrum.shows_colour() && !output.bins() && Converter::new(output, spectrum).channels() == 3 {
+        session.messages.warn("spectral range incompatible with color output");
+    }
+    session.attach(&options.common)?;
     let Some(octree) = session.octree.clone() else {
         session.prepare(&options.common)?;
         return Err(Failure::user("missing octree argument").into());
@@ -97,9 +102,6 @@ impl Job {
         let spec = OutputSpec::parse(&options.fields)?;
         let spectrum = &options.rendering.options.spectrum;
         let conversion = Converter::new(options.common.output, spectrum);
-        if !spectrum.shows_colour() && !options.common.output.bins() && conversion.channels() == 3 {
-            session.messages.warn("spectral range incompatible with color output");
-        }
         if options.format == OutputFormat::Colour {
             if spec.tree.is_some() || !matches!(spec.fields[..], [Field::Value | Field::Mirrored | Field::Unmirrored]) {
                 return Err(Failure::user("color format only with -ov, -or, -ox").into());
@@ -143,7 +145,7 @@ impl Job {
         session: &Session,
         options: &RayOptions,
         scene: &mut Scene<'_>,
-        input: impl Read,
+        input: impl Awaited,
     ) -> Result<(), Stop> {
         let mut out = StandardOutput::new();
         let picture = (options.width > 0 && options.height > 0).then_some((options.width, options.height));
@@ -159,7 +161,7 @@ impl Job {
         written.map_err(|e| Stop::writing("write error", &e))?;
         let records = RecordWriter::new(&self.spec.fields, &self.conversion, options);
         let tree = self.spec.tree.as_ref().map(|t| TreeWriter::new(t, &self.conversion, options));
-        let reader = RayReader::new(BufReader::with_capacity(1 << 16, input), options.input);
+        let reader = RayReader::new(input, options.input);
         let complete =
             stream::Stream::new(options, &self.spec).run(reader, &records, tree.as_ref(), scene, &mut out)?;
         if !complete {

@@ -3,7 +3,7 @@
 //! Batches grow from one ray to 4096 and end where output must be flushed; where they end depends on the options and on
 //! the rays, never on how a pipe delivers them.
 
-use super::input::RayReader;
+use super::input::{Awaited, RayReader};
 use super::record::RecordWriter;
 use super::tree::TreeWriter;
 use crate::light::Light;
@@ -12,10 +12,14 @@ use ambit_base::{DVec3, FAR};
 use ambit_cli::{OutputSpec, RayOptions};
 use ambit_render::picture::Batches;
 use ambit_render::{Aim, Answer, Request};
-use std::io::{BufRead, Write};
+use std::io::Write;
 
 /// Bytes of a tree that are collected before they are written.
 const BUFFER: usize = 1 << 16;
+
+/// Bytes of records that are collected before they are written, while rays are at hand: as many as Radiance collects. So
+/// `rtrace -h … | head -1` reads all of a short output before it closes the pipe.
+const COLLECTED: usize = 1 << 12;
 
 /// How a stream is cut.
 pub(crate) struct Stream {
@@ -56,16 +60,32 @@ impl Stream {
     }
 
     /// Answers rays until they end. Returns false if more were promised (`-y`).
-    pub(crate) fn run<R: BufRead>(
+    pub(crate) fn run<R: Awaited>(
         &self,
-        mut rays: RayReader<R>,
+        rays: RayReader<R>,
         records: &RecordWriter<'_>,
         tree: Option<&TreeWriter<'_>>,
         light: &mut dyn Light,
         out: &mut dyn Write,
     ) -> Result<bool, Stop> {
-        let mut batches = Batches::default();
         let mut bytes = Vec::new();
+        let result = self.answer(rays, records, tree, light, &mut bytes, out);
+        // What ended it does not take with it what was calculated; the first error counts.
+        let written = put(&mut bytes, out);
+        result.and_then(|complete| written.map(|()| complete))
+    }
+
+    /// As [`Self::run`]; what is left in `bytes` has not been written.
+    fn answer<R: Awaited>(
+        &self,
+        mut rays: RayReader<R>,
+        records: &RecordWriter<'_>,
+        tree: Option<&TreeWriter<'_>>,
+        light: &mut dyn Light,
+        bytes: &mut Vec<u8>,
+        out: &mut dyn Write,
+    ) -> Result<bool, Stop> {
+        let mut batches = Batches::default();
         let mut requests: Vec<Request> = Vec::new();
         let mut answers = Vec::new();
         let mut before = (DVec3::ZERO, DVec3::ZERO);
@@ -84,6 +104,10 @@ impl Stream {
             let mut end = false;
             let mut zero = false;
             while requests.len() < size {
+                // What has been calculated is safe from whatever ends the program while the next rays are waited for.
+                if !bytes.is_empty() && rays.waits() {
+                    put(bytes, out)?;
+                }
                 let Some((origin, direction)) = rays.next() else {
                     end = true;
                     break;
@@ -101,13 +125,13 @@ impl Stream {
                     if !end {
                         light.check()?;
                     }
-                    let answer = show(request, tree, &mut bytes, light, out)?;
-                    records.write_all(&mut bytes, &[answer], light.spectra(), &|id| light.name(id));
+                    let answer = show(request, tree, bytes, light, out)?;
+                    records.write_all(bytes, &[answer], light.spectra(), &|id| light.name(id));
                     before = (answer.origin, answer.direction);
                 }
             } else {
                 light.trace(&requests, &mut answers)?;
-                records.write_all(&mut bytes, &answers, light.spectra(), &|id| light.name(id));
+                records.write_all(bytes, &answers, light.spectra(), &|id| light.name(id));
                 if let Some(last) = answers.last() {
                     before = (last.origin, last.direction);
                 }
@@ -117,16 +141,14 @@ impl Stream {
             requests.clear();
             let mut flush = self.interval > 0 && unflushed >= self.interval;
             if zero {
-                records.write_bogus(&mut bytes, before, &|id| light.name(id));
+                records.write_bogus(bytes, before, &|id| light.name(id));
                 made += 1;
                 // Alone it is written, but no reason to flush.
                 flush |= unflushed > 0;
             }
             let full = self.most > 0 && made >= self.most;
-            // What has been calculated is safe from whatever ends the program while the next rays are waited for.
-            if !bytes.is_empty() {
-                out.write_all(&bytes).map_err(|e| Stop::writing("write error", &e))?;
-                bytes.clear();
+            if flush || end || full || bytes.len() >= COLLECTED {
+                put(bytes, out)?;
             }
             if flush || end || full {
                 out.flush().map_err(|e| Stop::writing("write error", &e))?;
@@ -139,6 +161,16 @@ impl Stream {
             }
         }
     }
+}
+
+/// Writes what was collected, once: what cannot be written is not tried again.
+fn put(bytes: &mut Vec<u8>, out: &mut dyn Write) -> Result<(), Stop> {
+    if bytes.is_empty() {
+        return Ok(());
+    }
+    let written = out.write_all(bytes);
+    bytes.clear();
+    written.map_err(|e| Stop::writing("write error", &e))
 }
 
 /// Answers one ray and writes its tree, which may be larger than memory.
@@ -172,9 +204,10 @@ mod tests {
     use ambit_render::Visit;
     use ambit_scene::ObjectId;
     use std::cell::RefCell;
+    use std::io::Read;
     use std::rc::Rc;
 
-    /// A light whose radiance is the ray's first coordinate; it notes the sizes of batches, and insists on being given the
+    /// A light whose radiance is the ray's first coordinate, and which a negative one stops; it notes the sizes of batches, and insists on being given the
     /// memory of the answers before.
     struct Plain {
         log: Rc<RefCell<Vec<String>>>,
@@ -188,6 +221,9 @@ mod tests {
                 self.log.borrow_mut().push(format!("trace {}", requests.len()));
             }
             assert_eq!((answers.len(), answers.capacity()), self.left, "other memory than before");
+            if requests.iter().any(|r| r.origin.x < 0.0) {
+                return Err(Stop::Signal);
+            }
             let answer = |r: &Request| {
                 let mut a = Answer::nothing(r.origin, r.direction.normalize());
                 a.value = Rgb::splat(r.origin.x as f32);
@@ -206,6 +242,70 @@ mod tests {
         fn name(&self, _: ObjectId) -> &[u8] {
             b"it"
         }
+    }
+
+    /// Output that notes how many bytes come at once.
+    struct Pieces(Vec<usize>);
+
+    impl Write for Pieces {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            self.0.push(bytes.len());
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+
+    /// Input whose parts, the last one first, come one after the other.
+    struct Slow<'a>(Vec<&'a [u8]>);
+
+    impl Read for Slow<'_> {
+        fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+            let part = self.0.pop().unwrap_or_default();
+            bytes[..part.len()].copy_from_slice(part);
+            Ok(part.len())
+        }
+    }
+
+    impl Awaited for Slow<'_> {
+        fn waits(&self) -> bool {
+            !self.0.is_empty()
+        }
+    }
+
+    /// The pieces in which records of 4 bytes are written.
+    fn pieces(input: impl Awaited) -> (Vec<usize>, Result<bool, Stop>) {
+        let mut options = RayOptions::new(1);
+        options.format = OutputFormat::Float;
+        options.common.output = Output::Average;
+        let spec = OutputSpec::parse(&options.fields).unwrap();
+        let converter = Converter::new(options.common.output, &options.rendering.options.spectrum);
+        let records = RecordWriter::new(&spec.fields, &converter, &options);
+        let mut out = Pieces(Vec::new());
+        let mut light = Plain { log: Rc::default(), left: (0, 0) };
+        let rays = RayReader::new(input, InputFormat::Ascii);
+        let result = Stream::new(&options, &spec).run(rays, &records, None, &mut light, &mut out);
+        (out.0, result)
+    }
+
+    #[test]
+    fn records_are_collected_while_rays_are_at_hand() {
+        assert_eq!(pieces(rays(9).as_bytes()).0, [36]);
+        // Batches of 1, 1, 2, 4 … 512 are 4096 bytes.
+        assert_eq!(pieces(rays(1500).as_bytes()).0, [4096, 1904]);
+        // Before more is waited for, what is there is written: the third ray is in a batch with the fourth.
+        let (first, second) = (rays(3), rays(2));
+        assert_eq!(pieces(Slow(vec![second.as_bytes(), first.as_bytes()])).0, [8, 12]);
+    }
+
+    #[test]
+    fn what_was_calculated_is_written_whatever_ends_the_run() {
+        let input = rays(9).replace("7 0 0", "-7 0 0");
+        let (written, result) = pieces(input.as_bytes());
+        assert_eq!(written, [16]);
+        assert!(matches!(result, Err(Stop::Signal)));
     }
 
     /// Output that notes when it is flushed, and how many bytes came.
