@@ -44,9 +44,8 @@ impl<O: Observer> Walk<'_, O> {
             origin: Origin::of(ray, transmitted, coefficient.max_element().min(1.0)),
         };
         if O::ACTIVE {
-            // What was sampled here was sampled beside an edge.
-            let position = self.asked_at(ray, normal);
-            self.follow_hemisphere(ray, &Query { position, ..query }, coefficient);
+            let origin = query.origin.moved(self.off_edges(ray, normal));
+            self.follow_hemisphere(ray, &Query { origin, ..query }, coefficient);
         }
         match self.cache.ask(self.tracer, &query) {
             Answer::Fallback(_) if self.is_endless() => self.survive(ray, coefficient, query),
@@ -60,8 +59,8 @@ impl<O: Observer> Walk<'_, O> {
             Answer::Fallback(v) => ray.value += coefficient * v,
             Answer::Miss => {
                 let k = ray.throughput * ray.attenuation() * coefficient;
-                let position = self.asked_at(ray, normal);
-                self.misses.push(Miss { coefficient: k, query: Query { position, ..query } });
+                let origin = query.origin.moved(self.off_edges(ray, normal));
+                self.misses.push(Miss { coefficient: k, query: Query { origin, ..query } });
             }
             Answer::Uncached => self.hemisphere(ray, coefficient, normal, shading, transmitted),
         }

@@ -30,6 +30,8 @@ pub(crate) struct Origin {
     travelled: f64,
     /// The largest channel of what the answer is multiplied by, at most 1.
     reflectance: f32,
+    /// How far beside the point its hemisphere stands, scene units.
+    beside: Vec3,
 }
 
 impl Origin {
@@ -42,7 +44,13 @@ impl Origin {
             clipped: if transmitted { ray.next_clipped } else { ray.clipped },
             interior: ray.interior,
             travelled: ray.travelled + ray.distance,
+            beside: Vec3::ZERO,
         }
+    }
+
+    /// The same with a hemisphere that stands so far beside the point.
+    pub(crate) fn moved(self, beside: Vec3) -> Self {
+        Self { beside, ..self }
     }
 
     /// True if the path goes on to the far side.
@@ -53,7 +61,7 @@ impl Origin {
     /// The ray by which the path goes on, for its depth and weight to be set.
     pub(crate) fn go_on(&self, position: DVec3, direction: DVec3, stream: Stream) -> Ray<'static> {
         let kind = if self.transmitted { Kinds::AMBIENT_TRANSMITTED } else { Kinds::AMBIENT_REFLECTED };
-        let mut ray = Ray::primary(position, direction, FAR, self.interior, stream);
+        let mut ray = Ray::primary(position + self.beside.as_dvec3(), direction, FAR, self.interior, stream);
         ray.kind = kind;
         ray.lineage = kind;
         ray.level = self.level;

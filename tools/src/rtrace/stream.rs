@@ -207,8 +207,8 @@ mod tests {
     use std::io::Read;
     use std::rc::Rc;
 
-    /// A light whose radiance is the ray's first coordinate, and which a negative one stops; it notes the sizes of batches, and insists on being given the
-    /// memory of the answers before.
+    /// A light whose radiance is the ray's first coordinate, and which a negative one stops; it notes the sizes of batches,
+    /// and insists on being given the memory of the answers before.
     struct Plain {
         log: Rc<RefCell<Vec<String>>>,
         /// Answers of the last batch, and the memory that they are in.
