@@ -38,8 +38,10 @@ fn mask_in(mut read: impl FnMut(&mut [u8]) -> Option<usize>) -> Option<u64> {
         let count = read(&mut block).filter(|&count| count > 0)?;
         for &byte in &block[..count] {
             if byte != b'\n' {
-                line.iter_mut().skip(length).take(1).for_each(|place| *place = byte);
-                length = line.len().min(length + 1);
+                if let Some(place) = line.get_mut(length) {
+                    *place = byte;
+                    length += 1;
+                }
                 continue;
             }
             if let Some(mask) = line[..length].strip_prefix(b"SigIgn:") {

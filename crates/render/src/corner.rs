@@ -3,7 +3,7 @@
 //! A view that looks straight along a room, as those of many boxes do, has pixels on the very line where wall and floor
 //! meet. A hemisphere there leaves through the floor: it begins in the floor's plane, and what is nearer than ε is no hit.
 //! Its record, half of it dark, would serve all around. So it stands a little beside the edge, where the wall's irradiance
-//! goes towards what it is at its end.
+//! goes towards what it is at its end. Hemispheres that are not kept (`-aa 0`) stand where the ray ends, as in Radiance.
 
 use crate::observer::Observer;
 use crate::ray::Ray;
@@ -25,7 +25,8 @@ impl<O: Observer> Walk<'_, O> {
         if ray.depth == 0 { self.off_what_stands_on(ray, normal) } else { Vec3::ZERO }
     }
 
-    /// The way off the surfaces that stand on the hit. What leans to its own surface by less than 45° is not found.
+    /// The way off the surfaces that stand on the hit. What leans to its own surface by less than 45° (55° between the
+    /// tangents) is not found.
     #[inline(never)]
     fn off_what_stands_on(&mut self, ray: &Ray<'_>, normal: DVec3) -> Vec3 {
         let u = normal.any_orthonormal_vector();

@@ -36,7 +36,8 @@ pub(crate) trait Awaited: Read {
 
 impl<R: Read + AsFd> Awaited for Patient<R> {
     fn waits(&self) -> bool {
-        poll(&mut [PollFd::new(&self.input, PollFlags::IN)], Some(&Timespec::default())) == Ok(0)
+        let ready = poll(&mut [PollFd::new(&self.input, PollFlags::IN)], Some(&Timespec::default()));
+        !matches!(ready, Ok(1..))
     }
 }
 
@@ -76,11 +77,16 @@ impl<R: Awaited> RayReader<R> {
         Self { input: BufReader::with_capacity(BUFFER, input), format }
     }
 
-    /// True if nothing of what was read is left, and the next ray, or the end, has to be waited for.
+    /// True if no whole ray is left of what was read, and the rest of the next one, or the end, has to be waited for.
     pub(crate) fn waits(&self) -> bool {
         let left = self.input.buffer();
-        let spent = left.is_empty() || self.format == InputFormat::Ascii && left.iter().all(|&b| is_space(b));
-        spent && self.input.get_ref().waits()
+        let whole = match self.format {
+            // Words that end, a space behind each.
+            InputFormat::Ascii => left.windows(2).filter(|w| !is_space(w[0]) && is_space(w[1])).nth(5).is_some(),
+            InputFormat::Float => left.len() >= 6 * size_of::<f32>(),
+            InputFormat::Double => left.len() >= 6 * size_of::<f64>(),
+        };
+        !whole && self.input.get_ref().waits()
     }
 
     /// Origin and direction of the next ray. `None` at the end of the input, or where it stops to be numbers; an

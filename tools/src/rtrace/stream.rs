@@ -186,13 +186,15 @@ fn show(
         tree.write(bytes, ray, bins, names);
         if bytes.len() >= BUFFER {
             if written.is_ok() {
-                written = out.write_all(bytes);
+                written = put(bytes, out);
             }
             bytes.clear();
         }
-    })?;
-    written.map_err(|e| Stop::writing("write error", &e))?;
-    Ok(answer)
+    });
+    if written.is_err() {
+        bytes.clear();
+    }
+    written.and(answer)
 }
 
 #[cfg(test)]
@@ -298,6 +300,10 @@ mod tests {
         // Before more is waited for, what is there is written: the third ray is in a batch with the fourth.
         let (first, second) = (rays(3), rays(2));
         assert_eq!(pieces(Slow(vec![second.as_bytes(), first.as_bytes()])).0, [8, 12]);
+        // As it is if a part of a ray has come.
+        let part = format!("{first}9 0 ");
+        let rest = second.split_once(' ').unwrap().1.split_once(' ').unwrap().1;
+        assert_eq!(pieces(Slow(vec![rest.as_bytes(), part.as_bytes()])).0, [8, 12]);
     }
 
     #[test]
