@@ -14,6 +14,7 @@ use crate::reuse::Reuse;
 use crate::sampler::{Answer, Query, Sampler};
 use crate::steps::Steps;
 use crate::store::Store;
+use crate::worth::Worth;
 use ambit_base::{DVec3, Rgb};
 use std::sync::Arc;
 
@@ -49,6 +50,8 @@ pub struct Cache {
     reins: Option<Reins>,
     /// Where records are hardly reused, if that is to be found out.
     pub(crate) reuse: Option<Reuse>,
+    /// How many samples further records are worth.
+    pub(crate) worth: Worth,
     /// Records that the last one has reined in, and their radii before widening.
     pub(crate) changed: Vec<(u32, f64)>,
     /// Counts look-ups, if they are to be counted.
@@ -76,6 +79,7 @@ impl Cache {
             records: Vec::new(),
             reins: Reins::new(&params, cube_origin, cube_edge),
             reuse: params.systems.measured_reuse.then(|| Reuse::new(&Limits::new(&params, cube_edge), params.passes)),
+            worth: Worth::default(),
             changed: Vec::new(),
         }
     }
@@ -148,6 +152,7 @@ impl Cache {
             return false;
         }
         self.average.add(record.level, record.values());
+        self.worth.made(record.level);
         let (position, radius) = (record.position, unwidened(&record));
         let id = self.records.len() as u32;
         self.records.push(record);

@@ -70,6 +70,9 @@ impl Cache {
             }
             return;
         }
+        if level == 0 {
+            self.worth.asked(window.len());
+        }
         let mut open = window.to_vec();
         if stale {
             let cache = &*self;

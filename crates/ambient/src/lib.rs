@@ -56,6 +56,7 @@ mod supersample;
 mod tests;
 mod text;
 mod tilt;
+mod worth;
 
 pub use cache::{Cache, Statistics};
 pub use codec::{Layout, RECORD_BYTES};

@@ -234,13 +234,6 @@ impl Limits {
         if self.actual_weights { ray.clamp(f32::MIN_POSITIVE, 1.0) } else { Params::record_weight(level, ray) }
     }
 
-    /// The share of `-ad` and `-as` that the hemisphere of a record of this weight gets: its square. Radiance samples in
-    /// proportion to the weight; but a deeper record is one of hundreds that a hemisphere above it sees, and their noise
-    /// is averaged there.
-    pub(crate) fn share_of_samples(weight: f32) -> f32 {
-        weight * weight
-    }
-
     /// The angle by which normals may differ for a query of the given weight: it opens for dim rays.
     pub fn opened_angle(&self, weight: f32) -> f64 {
         if weight < 0.6 {

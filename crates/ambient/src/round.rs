@@ -10,7 +10,6 @@ use crate::finish::{Cell, Outcome, finish, least_distance, mean, once};
 use crate::gather::{Sampled, trace};
 use crate::hemisphere::Hemisphere;
 use crate::light::Light;
-use crate::params::Limits;
 use crate::reuse::RENT;
 use crate::sampler::{Query, Sample, Sampler};
 use crate::steps::Chain;
@@ -122,7 +121,10 @@ impl<S: Sampler> Round<'_, S> {
         let weight = self.cache.limits.record_weight(query.level, query.weight);
         let stream = Stream::new(0, key(query, params.seed));
         let plan = match self.kept {
-            Kept::Yes => Hemisphere::new(params, Limits::share_of_samples(weight), 1.0, query.normal, stream, true),
+            Kept::Yes => {
+                let share = self.cache.worth.share(query.level, weight);
+                Hemisphere::new(params, share, 1.0, query.normal, stream, true)
+            }
             Kept::No => Hemisphere::few(params, weight / RENT as f32, query.normal, stream),
         };
         // A cache without divisions ends before this.
@@ -179,7 +181,8 @@ impl<S: Sampler> Round<'_, S> {
     /// Where a hemisphere takes extra samples: where cells differ from their neighbours.
     fn extras(&self, query: &Query<S::Origin>, plan: &Hemisphere, cells: &[Cell]) -> Vec<Extra> {
         let weight = self.cache.limits.record_weight(query.level, query.weight);
-        let budget = budget(self.cache.params.super_samples, Limits::share_of_samples(weight), plan.grid().side());
+        let share = self.cache.worth.share(query.level, weight);
+        let budget = budget(self.cache.params.super_samples, share, plan.grid().side());
         if budget == 0 || cells.iter().any(|c| c.distance <= 0.0) {
             return Vec::new();
         }

@@ -54,6 +54,7 @@ fn reference(params: Params, room: &Room, side: u32) -> Run {
     let mut cache = Cache::new(params, DVec3::splat(-0.01), 1.02);
     let mut samples = [0; 16];
     let pixels = room.pixels(side);
+    cache.worth.asked(pixels.len());
     let values = pixels.iter().map(|m| serial::ask(&mut cache, room, &m.query, &mut samples).value).collect();
     Run { values, cache_hash: hash(&cache), records: cache.records().len(), samples: samples.iter().sum() }
 }

@@ -4,7 +4,7 @@ use super::room::Room;
 use crate::fill::key;
 use crate::finish::{Cell, Outcome, finish, mean};
 use crate::hemisphere::Hemisphere;
-use crate::params::{Limits, Params};
+use crate::params::Params;
 use crate::supersample::{allocate, budget};
 use crate::{Cache, Light, Query};
 use ambit_base::{Colour, Stream};
@@ -18,7 +18,7 @@ pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &m
         return value;
     }
     let params = *cache.params();
-    let share = Limits::share_of_samples(Params::record_weight(query.level, query.weight));
+    let share = cache.worth.share(query.level, Params::record_weight(query.level, query.weight));
     let stream = Stream::new(0, key(query, params.seed));
     let plan = Hemisphere::new(&params, share, 1.0, query.normal, stream, true).expect("there are divisions");
     let mut look = |cache: &mut Cache, direction, number| {
