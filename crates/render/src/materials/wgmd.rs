@@ -132,8 +132,7 @@ impl<O: Observer> Walk<'_, O> {
         let (far, far_normal) = self.wgmd_far(ray, m, finish, bare);
         let far = far * rest;
         if let Some(Lobe { colour, facing, facets: None }) = &transmission {
-            let flat = !facing.textured || ray.is_ambient();
-            let straight = flat && colour.brightness() > (near + far).brightness();
+            let straight = colour.brightness() > (near + far).brightness();
             self.pass(ray, self.wgmd_through(ray, facing), *colour, straight);
         }
         let threshold = self.tracer.options.specular.threshold;
