@@ -89,9 +89,12 @@ impl<O: Observer> Walk<'_, O> {
         count
     }
 
-    /// True if the ray has been shaded by a material that looks the same from both sides.
+    /// True if the ray has been shaded by a material that looks the same from both sides. Backs that are not visible let it
+    /// pass as it is.
     fn turned(&self, ray: &Ray<'_>) -> bool {
         let of = |id| self.tracer.scene.modifiers.get(id).0;
-        ray.material != VOID && matches!(of(ray.material), Node::Material(m) if m.is_two_sided())
+        self.tracer.options.back_visible
+            && ray.material != VOID
+            && matches!(of(ray.material), Node::Material(m) if m.is_two_sided())
     }
 }

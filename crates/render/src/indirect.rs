@@ -10,6 +10,9 @@ use ambit_base::{DVec3, EPSILON, Rgb};
 
 /// Tag of a hemisphere's point set; the far side's is the next.
 const HEMISPHERE: u64 = 0xa0;
+/// Fewer samples than these do not tell what a texture's tilt does, and count alike, as in Radiance: the quotient that tells
+/// it is off by a tenth for four.
+const LEAST_FOR_TILT: usize = 49;
 
 impl<O: Observer> Walk<'_, O> {
     /// As [`Walk::ambient`], for materials that take a coefficient without a positive channel as none.
@@ -91,7 +94,9 @@ impl<O: Observer> Walk<'_, O> {
             self.evaluate(&mut child);
             alive += 1;
             let light = child.coefficient * child.value;
-            tilt.add(&plan, cell, light);
+            if plan.len() >= LEAST_FOR_TILT {
+                tilt.add(&plan, cell, light);
+            }
             sum += light;
         }
         if alive == 0 && !self.is_endless() {

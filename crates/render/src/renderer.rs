@@ -266,7 +266,7 @@ impl Tracer<'_> {
         answer.first_length = ray.distance;
         answer.point = ray.point;
         answer.weight = ray.weight;
-        answer.coefficient = ray.attenuation();
+        answer.coefficient = ray.throughput * ray.attenuation();
         if let Some(hit) = &ray.hit
             && met
         {

@@ -99,13 +99,13 @@ impl<O: Observer> Walk<'_, O> {
             let k = colour * through_specular as f32;
             self.sample_transmission(ray, &facing, lobes.direction, k, &facets);
         }
-        let mut near = colour * diffuse.max(0.0) as f32;
-        if lump_reflected {
-            near += lobes.mirror;
+        // As in Radiance, highlights below -st count only beside diffuse light.
+        if diffuse > EPSILON {
+            let lump = if lump_reflected { lobes.mirror } else { Rgb::ZERO };
+            self.ambient(ray, colour * diffuse as f32 + lump, facing.normal);
         }
-        self.ambient(ray, near, facing.normal);
-        let far = if lump_through { through } else { through_diffuse };
-        if far > EPSILON {
+        if through_diffuse > EPSILON {
+            let far = if lump_through { through } else { through_diffuse };
             self.ambient(ray, colour * far as f32, -facing.normal);
         }
         let d = ray.direction;

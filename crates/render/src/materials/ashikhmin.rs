@@ -2,7 +2,7 @@
 //! Anisotropic Phong BRDF Model*). Opaque.
 
 use super::normal::LEAST_COSINE;
-use super::rough::tangents;
+use super::rough::{tangents, trial};
 use super::{Facing, Finish};
 use crate::Error;
 use crate::observer::Observer;
@@ -131,17 +131,17 @@ impl<O: Observer> Walk<'_, O> {
         let k = lobe.specular / wanted as f32;
         let stream = ray.stream.child(mix(LOBE, u64::from(ray.material)));
         let d = ray.direction;
-        let (mut sent, mut trial) = (0, 0);
-        while sent < wanted && trial < TRIALS * wanted {
-            let [x1, x2] = if trial == 0 { stream.two() } else { stream.split(LOBE, trial as u32).two() };
-            trial += 1;
+        let (mut sent, mut trials) = (0, 0);
+        while sent < wanted && trials < TRIALS * wanted {
+            let [x1, x2] = trial(stream, LOBE, trials, wanted);
+            trials += 1;
             let h = lobe.facet(2.0 * PI * x1, x2);
             let direction = d - h * (2.0 * d.dot(h));
             if direction.dot(facing.geometric) <= EPSILON {
                 continue;
             }
             sent += 1;
-            let tag = mix(LOBE, trial as u64);
+            let tag = mix(LOBE, trials as u64);
             let direction = direction.normalize();
             let Some(mut child) = self.child(ray, Kinds::SPECULAR_REFLECTED, direction, k, tag) else { continue };
             self.evaluate(&mut child);

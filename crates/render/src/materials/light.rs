@@ -66,6 +66,8 @@ impl<O: Observer> Walk<'_, O> {
         }
         let far_glow = m.kind == Kind::Glow && m.radius >= 0.0 && ray.travelled + ray.distance > m.radius;
         if !self.tracer.options.direct.visible && !ray.is_shadow() && !far_glow {
+            // It does not even count with its coefficient (`-oW`).
+            ray.throughput = Rgb::ZERO;
             return true;
         }
         if !front {

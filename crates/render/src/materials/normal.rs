@@ -147,13 +147,13 @@ impl<O: Observer> Walk<'_, O> {
                 self.sample_transmission(ray, &facing, through, k, &Facets::isotropic(through, m.roughness));
             }
         }
-        let mut near = colour * split.diffuse.max(0.0) as f32;
-        if lump_reflected {
-            near += split.mirror;
+        // As in Radiance, highlights below -st count only beside diffuse light.
+        if split.diffuse > EPSILON {
+            let lump = if lump_reflected { split.mirror } else { Rgb::ZERO };
+            self.ambient(ray, colour * split.diffuse as f32 + lump, facing.normal);
         }
-        self.ambient(ray, near, facing.normal);
-        let far = if lump_through { split.through } else { split.through_diffuse };
-        if far > EPSILON {
+        if split.through_diffuse > EPSILON {
+            let far = if lump_through { split.through } else { split.through_diffuse };
             self.ambient(ray, colour * far as f32, -facing.normal);
         }
         let flat = !split.smooth && !facing.textured && self.is_flat(ray);

@@ -5,7 +5,7 @@ use super::Facing;
 use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
-use ambit_base::{DVec3, EPSILON, Frame, Rgb, mix};
+use ambit_base::{DVec3, EPSILON, Frame, Rgb, Stream, mix};
 use std::f64::consts::PI;
 
 /// Above this `-ss` a lobe gets more than one ray.
@@ -90,6 +90,16 @@ pub(crate) fn tangents(normal: DVec3, u: DVec3) -> Option<[DVec3; 2]> {
     })
 }
 
+/// The pair of numbers of trial `i`. Those of several rays are stratified among themselves; those after a rejected one owe
+/// nothing to it, or more of a single ray's trials would succeed than of independent ones.
+pub(crate) fn trial(stream: Stream, tag: u64, i: usize, wanted: usize) -> [f64; 2] {
+    match i {
+        0 => stream.two(),
+        _ if wanted == 1 => stream.child(mix(tag, i as u64)).two(),
+        _ => stream.split(tag, i as u32).two(),
+    }
+}
+
 impl<O: Observer> Walk<'_, O> {
     /// How many rays sample a lobe of colour `k`.
     pub(crate) fn lobe_rays(&self, ray: &Ray<'_>, k: Rgb) -> usize {
@@ -105,10 +115,9 @@ impl<O: Observer> Walk<'_, O> {
         n.max(1.0) as usize
     }
 
-    /// The pair of numbers of trial `i`: azimuth in radians, and the second one folded by `-ss`.
-    pub(crate) fn lobe_numbers(&self, ray: &Ray<'_>, tag: u64, i: usize) -> (f64, f64) {
-        let stream = ray.stream.child(mix(tag, u64::from(ray.material)));
-        let [x1, x2] = if i == 0 { stream.two() } else { stream.split(tag, i as u32).two() };
+    /// The pair of numbers of trial `i` for `wanted` rays: azimuth in radians, and the second one folded by `-ss`.
+    fn lobe_numbers(&self, ray: &Ray<'_>, tag: u64, i: usize, wanted: usize) -> (f64, f64) {
+        let [x1, x2] = trial(ray.stream.child(mix(tag, u64::from(ray.material))), tag, i, wanted);
         let ss = self.tracer.options.specular.sampling;
         let x2 = if (0.0..1.0).contains(&ss) { 1.0 - ss * x2 } else { x2 };
         (2.0 * PI * x1, x2)
@@ -118,7 +127,7 @@ impl<O: Observer> Walk<'_, O> {
         let wanted = self.lobe_rays(ray, k);
         let d = ray.direction;
         let facet = |walk: &Self, trial: usize| {
-            let (phi, x2) = walk.lobe_numbers(ray, REFLECTION, trial);
+            let (phi, x2) = walk.lobe_numbers(ray, REFLECTION, trial, wanted);
             let slope = facets.slope(phi, x2);
             let h = facing.normal + slope;
             let r = d - h * (2.0 * d.dot(h) / (1.0 + slope.length_squared()));
@@ -138,7 +147,9 @@ impl<O: Observer> Walk<'_, O> {
             let tag = mix(REFLECTION, trial as u64);
             let Some(mut child) = self.child(ray, kind, direction, k / wanted as f32, tag) else { continue };
             if wanted > 1 {
-                let weight = 2.0 / (1.0 + facing.cosine / facing.normal.dot(direction).max(EPSILON));
+                // By the surface's own normal, as in Radiance, whatever textures do to it.
+                let cosine = -d.dot(facing.geometric);
+                let weight = 2.0 / (1.0 + cosine / facing.geometric.dot(direction).max(EPSILON));
                 let factor = (weight * wanted as f64 / trials as f64) as f32;
                 child.coefficient *= factor;
                 child.throughput *= factor;
@@ -161,7 +172,7 @@ impl<O: Observer> Walk<'_, O> {
         let coefficient = k / wanted as f32;
         let (mut sent, mut trials) = (0, 0);
         while sent < wanted && trials < TRIALS * wanted {
-            let (phi, x2) = self.lobe_numbers(ray, TRANSMISSION, trials);
+            let (phi, x2) = self.lobe_numbers(ray, TRANSMISSION, trials, wanted);
             trials += 1;
             let direction = (through + facets.slope(phi, x2)).normalize();
             if direction.dot(facing.geometric) >= -EPSILON {

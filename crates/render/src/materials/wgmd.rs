@@ -132,8 +132,7 @@ impl<O: Observer> Walk<'_, O> {
         let (far, far_normal) = self.wgmd_far(ray, m, finish, bare);
         let far = far * rest;
         if let Some(Lobe { colour, facing, facets: None }) = &transmission {
-            let flat = !facing.textured || ray.is_ambient();
-            let straight = flat && colour.brightness() > (near + far).brightness();
+            let straight = colour.brightness() > (near + far).brightness();
             self.pass(ray, self.wgmd_through(ray, facing), *colour, straight);
         }
         let threshold = self.tracer.options.specular.threshold;
@@ -160,8 +159,13 @@ impl<O: Observer> Walk<'_, O> {
                 self.sample_transmission(ray, facing, direction, *colour, facets);
             }
         }
-        self.positive_ambient(ray, near + lumped_near, facing.normal);
-        self.positive_ambient(ray, far + lumped_far, -far_normal);
+        // As in Radiance, highlights below -st count only beside diffuse light.
+        if near.max_element() > EPSILON as f32 {
+            self.ambient(ray, near + lumped_near, facing.normal);
+        }
+        if far.max_element() > EPSILON as f32 {
+            self.ambient(ray, far + lumped_far, -far_normal);
+        }
 
         let rough = |lobe: Option<Lobe>| lobe.and_then(|l| Some((l.facets?, l.facing, l.colour)));
         let (reflection, transmission) = (rough(reflection), rough(transmission));

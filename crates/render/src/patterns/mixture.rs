@@ -75,7 +75,9 @@ impl<O: Observer> Walk<'_, O> {
         };
         let shares = [fore, 1.0 - fore];
         let scene = self.tracer.scene;
-        let solid = mixture.sides.iter().any(|&side| scene.modifiers.has_material(side));
+        // A side without a share is as if it were not there.
+        let solid = |(&side, share): (&ObjectId, f64)| share > EPSILON && scene.modifiers.has_material(side);
+        let solid = mixture.sides.iter().zip(shares).any(solid);
         if !solid {
             let mut blend = Finish { pattern: finish.pattern * 0.0, tilt: finish.tilt * 0.0 };
             for (&side, share) in mixture.sides.iter().zip(shares) {

@@ -65,10 +65,12 @@ impl SmallSources {
         spacing: u32,
         distances: bool,
     ) -> Self {
+        // Both directions count in widths of pixels, also where pixels are not square.
+        let tall = projection.aspect() * f64::from(width) / f64::from(height.max(1));
         let mut small = Self { projection, width, height, distances, sources: Vec::new() };
         for outline in outlines {
             if let Some(polygon) = small.polygon(outline)
-                && least_width(&polygon) <= f64::from(spacing)
+                && least_width(&polygon.iter().map(|p| [p[0], p[1] * tall]).collect::<Vec<_>>()) <= f64::from(spacing)
             {
                 small.sources.push((outline.source, polygon));
             }
@@ -283,10 +285,14 @@ mod tests {
 
     /// What the picture of a sun adds up to, in pixels times radiance.
     fn drawn(outline: &SourceOutline, background: f32) -> (f64, usize) {
+        drawn_into(outline, background, (50, 50))
+    }
+
+    fn drawn_into(outline: &SourceOutline, background: f32, size: (u32, u32)) -> (f64, usize) {
         let projection = View { horizontal: 60.0, vertical: 60.0, ..View::default() }.set_up().unwrap();
-        let small = SmallSources::new(std::slice::from_ref(outline), projection, (50, 50), 4, false);
+        let small = SmallSources::new(std::slice::from_ref(outline), projection, size, 4, false);
         let pixel = Pixel { colour: Rgb::splat(background), distance: FAR as f32 };
-        let mut band = Band { top: 49, rows: vec![vec![pixel; 50]; 50] };
+        let mut band = Band { top: size.1 - 1, rows: vec![vec![pixel; size.0 as usize]; size.1 as usize] };
         let mut rays = 0;
         let done: Result<(), Infallible> = small.draw(&mut band, &mut |requests| {
             rays += requests.len();
@@ -308,6 +314,14 @@ mod tests {
         }
         let (sum, _) = drawn(&sun(DVec3::new(0.013, 1.0, 0.0)), 2.0);
         assert!((sum - 2.0 * (2500.0 - area) - 1000.0 * area).abs() < 1.0);
+    }
+
+    #[test]
+    fn smallness_is_measured_in_widths_of_pixels() {
+        // 5 columns wide of 1000, and as high as 5 of them.
+        let outline = sun(DVec3::Y);
+        assert_eq!(drawn_into(&outline, 0.0, (1000, 50)).1, 0);
+        assert!(drawn_into(&outline, 0.0, (50, 1000)).1 > 4);
     }
 
     #[test]

@@ -24,7 +24,8 @@ impl<O: Observer> Walk<'_, O> {
         ray.distance = FAR;
         ray.point = ray.origin;
         let source = &self.tracer.scene.sources[self.find_distant(ray)? as usize];
-        ray.hit = Some(stand_in(source.object, source.modifier, FAR, -ray.direction));
+        // Not its negation, of which a coordinate of 0 would be -0 in what is printed.
+        ray.hit = Some(stand_in(source.object, source.modifier, FAR, DVec3::ZERO - ray.direction));
         Some(source.modifier)
     }
 

@@ -246,7 +246,12 @@ fn image(parent: &Source, relay: &Relay, projection: &Projection) -> Option<Sour
         c.axis = projection.direction(c.axis);
         (c.p0, c.p1) = (projection.point(c.p0), projection.point(c.p1));
     }
-    image.restrictions = parent.restrictions.iter().map(|r| r.moved(projection)).collect();
+    // A shear does not leave circles round.
+    if projection.shear == DVec3::ZERO {
+        image.restrictions = parent.restrictions.iter().map(|r| r.moved(projection)).collect();
+    } else {
+        image.restrictions.clear();
+    }
     if distant {
         image.restrictions.push(Restriction::Beam {
             through: relay.centre,
