@@ -26,9 +26,12 @@ impl ConsoleMessages {
         say(format_args!("{}: {text}", self.program));
     }
 
-    /// Prints why the program stops.
+    /// Prints why the program stops, and what may help.
     pub fn fail(&self, failure: &Failure) {
         self.print(failure);
+        if let Some(hint) = &failure.hint {
+            self.print(hint);
+        }
     }
 }
 
