@@ -23,7 +23,7 @@ fn bench() -> TempDir {
 
 fn run(folder: &TempDir, program: &str, line: &str, input: &str) -> Output {
     let mut command = Command::new(program);
-    command.args(line.split_whitespace()).current_dir(folder.path());
+    command.args(line.split_whitespace()).current_dir(folder.path()).env("RAYPATH", ".");
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("it runs");
     // A program may end before it has read everything.
@@ -40,7 +40,7 @@ fn files_of_another_kind_are_named() {
     let folder = bench();
     let (oconv, rtrace) = (env!("CARGO_BIN_EXE_oconv"), env!("CARGO_BIN_EXE_rtrace"));
     for (program, line, text) in [
-        (rtrace, "empty", "rtrace: fatal - (empty): not an octree (it is empty)\n"),
+        (rtrace, "empty", "rtrace: fatal - (empty): not an octree (nothing in it)\n"),
         (rtrace, "s.rad", "rtrace: fatal - (s.rad): not an octree (no header; oconv makes octrees of scene files)\n"),
         (
             rtrace,
@@ -99,6 +99,19 @@ fn mistaken_options_are_explained_on_a_second_line() {
         let output = run(&folder, program, "-help", "");
         let text = format!("{name}: fatal - unknown option: '-help'\n{name}: --help lists the options\n");
         assert_eq!((output.status.code(), told(&output)), (Some(1), text));
+    }
+}
+
+#[test]
+fn places_in_expressions_are_marked_below_them() {
+    let folder = bench();
+    std::fs::write(folder.path().join("bad.cal"), "a = 1;\nf = 1 + ;\n").expect("it can be written");
+    for (option, text) in [
+        ("-e a=(1+", "rtrace: a=(1+\nrtrace:     ^ unexpected character\n"),
+        ("-f bad.cal", "rtrace: ./bad.cal, line 2:\nrtrace: f = 1 + ;\nrtrace:         ^ unexpected character\n"),
+    ] {
+        let output = run(&folder, env!("CARGO_BIN_EXE_rtrace"), &format!("{option} s.oct"), "");
+        assert_eq!((output.status.code(), told(&output).as_str()), (Some(1), text));
     }
 }
 

@@ -185,8 +185,8 @@ pub enum Problem {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Instead {
-    /// There is not a byte, as where the program failed that should have made it.
-    #[error(" (it is empty)")]
+    /// There is not a byte, as where the program failed that should have made it, or it is a directory.
+    #[error(" (nothing in it)")]
     Nothing,
     /// Text without a header, as scene files are.
     #[error(" (no header; oconv makes octrees of scene files)")]

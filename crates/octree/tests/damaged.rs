@@ -45,7 +45,7 @@ fn damage_is_named_as_radiance_names_it() {
     };
     let set = tree + 1;
     let cases: Vec<(Vec<u8>, &str)> = vec![
-        (Vec::new(), "(x.oct): not an octree (it is empty)"),
+        (Vec::new(), "(x.oct): not an octree (nothing in it)"),
         (text("#?RADIANCE", "\0?RADIANCE"), "(x.oct): not an octree"),
         (b"void light l\n".to_vec(), "(x.oct): not an octree (no header; oconv makes octrees of scene files)"),
         (
