@@ -75,6 +75,23 @@ fn files_of_another_kind_are_named() {
 }
 
 #[test]
+fn files_that_are_no_ambient_files_are_named_once() {
+    let folder = bench();
+    let (rtrace, lookamb) = (env!("CARGO_BIN_EXE_rtrace"), env!("CARGO_BIN_EXE_lookamb"));
+    let output = run(&folder, rtrace, "-h -ab 1 -af s.rad s.oct", "");
+    let problem = "bad header: expected an empty line at its end";
+    assert_eq!(told(&output), format!("rtrace: fatal - bad/incompatible ambient file \"s.rad\": {problem}\n"));
+    for (file, problem) in [
+        ("empty", "bad header: expected some text (there is nothing in it)"),
+        ("s.rad", problem),
+        ("s.oct", "FORMAT=Radiance_octree (expected Radiance_ambval)"),
+    ] {
+        let output = run(&folder, lookamb, file, "");
+        assert_eq!(told(&output), format!("lookamb: format error on input: {problem}\n"), "{file}");
+    }
+}
+
+#[test]
 fn mistaken_options_are_explained_on_a_second_line() {
     let folder = bench();
     for (program, name) in [(env!("CARGO_BIN_EXE_rtrace"), "rtrace"), (env!("CARGO_BIN_EXE_rpict"), "rpict")] {

@@ -165,7 +165,7 @@ impl Colours {
 
 fn to_binary(bytes: &[u8], name: &str, options: Options, line: &[u8], out: &mut impl Write) -> Result<(), Failure> {
     let (mut header, start) = if options.header {
-        let (header, start) = Header::parse(bytes, name).map_err(|e| Failure::Format(e.to_string()))?;
+        let (header, start) = Header::parse(bytes, name).map_err(|e| Failure::Format(e.problem()))?;
         if let Some(format) = header.format()
             && format != "ascii"
         {
