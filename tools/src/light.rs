@@ -216,7 +216,7 @@ fn failed(error: ambit_render::Error) -> Stop {
     let place = error.location();
     // The text is Radiance's; the place comes after it, as scripts look at the beginning.
     let text = if place.line > 0 { format!("{error} ({place})") } else { error.to_string() };
-    Stop::Failure(Failure { class, text })
+    Stop::Failure(Failure::new(class, text))
 }
 
 /// A name for this process among all that share a file system.

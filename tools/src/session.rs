@@ -1,6 +1,5 @@
 //! What a rendering program does around its work: reading the command line, messages, signals, the exit status.
 
-use crate::threads::start_threads;
 use ambit_cli::{
     About, Common, ConsoleMessages, Failure, Features, Outside, Process, Progress, Row, Scan, Signals, VERSION, answer,
     attach_error_file, broken_pipes_end, completions, defaults, long_help, man_page, scan,
@@ -172,7 +171,7 @@ impl Session {
                 Some(text) => {
                     // No class word here.
                     self.messages.print(text);
-                    Err(Stop::Failure(Failure { class: ambit_cli::Class::User, text: String::new() }))
+                    Err(Failure::user("").into())
                 }
             };
         }
@@ -213,24 +212,25 @@ impl Session {
         if let Some(file) = &common.error_file {
             let words = self.words.iter().chain(&self.octree).chain(&self.excess).map(|w| bytes_of(w));
             let command = command_line(&bytes_of(&self.program), words);
-            if attach_error_file(file, &command).is_err() {
-                // As Radiance: without a word.
-                return Err(Stop::Failure(Failure { class: ambit_cli::Class::System, text: String::new() }));
-            }
+            // Radiance ends without a word.
+            attach_error_file(file, &command)
+                .map_err(|e| Failure::system(format!("cannot open error file \"{file}\""), &e))?;
         }
-        match &self.octree {
-            Some(octree) if !self.excess.is_empty() => Err(Failure::at(octree).into()),
+        match (&self.octree, self.excess.first()) {
+            (Some(octree), Some(word)) => {
+                let hint = if word.starts_with('-') { "options come before it" } else { "nothing may follow it" };
+                Err(Failure::at(octree).hint(format!("'{octree}' is taken for the octree, and {hint}")).into())
+            }
             _ => Ok(()),
         }
     }
 
-    /// Sets up what comes before the work: threads; refuses what is not served.
-    pub(crate) fn prepare(&mut self, common: &Common) -> Result<(), Stop> {
+    /// Refuses to attach to a program that stays behind: there is none, every run renders by itself.
+    pub(crate) fn refuse_attachment(&self, common: &Common) -> Result<(), Failure> {
         if common.persist.is_some() && self.octree.is_none() {
-            // No program stays behind that could be attached to: every run renders by itself.
-            return Err(Failure::unsupported("persist mode (-P, -PP) without an octree is").into());
+            return Err(Failure::unsupported("persist mode (-P, -PP) without an octree is"));
         }
-        Ok(start_threads(common.threads())?)
+        Ok(())
     }
 
     /// From here on there are files to close: a signal leaves time for that.

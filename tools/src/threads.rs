@@ -27,6 +27,10 @@ const STACK: usize = 128 << 20;
 /// Address space that a thread takes: its stack, and what the C library sets apart for its memory.
 const SPACE: u64 = 2 * STACK as u64;
 
+/// More threads than this, and than there are processors, bring nothing: a slip of the finger should not take minutes to
+/// start them.
+const MOST: usize = 512;
+
 /// Runs a program of this name on a thread with that much stack.
 pub(crate) fn on_deep_stack(name: &str, program: impl FnOnce() -> ExitCode + Send + 'static) -> ExitCode {
     let thread = std::thread::Builder::new().name("main".into()).stack_size(STACK).spawn(program);
@@ -47,9 +51,10 @@ pub(crate) fn on_deep_stack(name: &str, program: impl FnOnce() -> ExitCode + Sen
 pub(crate) fn start_threads(wanted: usize) -> Result<(), Failure> {
     let limit = getrlimit(Resource::As).current;
     let room = limit.map_or(usize::MAX, |space| (space / 2 / SPACE) as usize);
+    let useful = std::thread::available_parallelism().map_or(MOST, |n| n.get().max(MOST));
     rayon::ThreadPoolBuilder::new()
         .stack_size(STACK)
-        .num_threads(wanted.min(room).max(1))
+        .num_threads(wanted.min(useful).min(room).max(1))
         .use_current_thread()
         .build_global()
         .map_err(|e| Failure::system("cannot start threads", &std::io::Error::other(e)))

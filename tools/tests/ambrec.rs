@@ -13,6 +13,7 @@ grey polygon ceiling 0 0 12 0 0 2.5 0 3 2.5 4 3 2.5 4 0 2.5
 lamp polygon light 0 0 12 1.5 1 2.4 1.5 2 2.4 2.5 2 2.4 2.5 1 2.4
 ";
 const RECORD: usize = 67;
+const MIXED: &str = "-ab 2 --bounces mixed";
 
 struct Bench(TempDir);
 
@@ -169,4 +170,20 @@ fn exported_records_are_a_scene() {
     assert!(head.contains(&format!("element vertex {count}\n")));
     assert_eq!(body.lines().count(), count);
     assert!(body.lines().all(|l| l.split(' ').count() == head.matches("property").count()), "{body}");
+}
+
+/// Text has no room for what the last bounces brought.
+#[test]
+fn text_that_leaves_out_bounces_is_told() {
+    let bench = Bench::new();
+    for (name, options, told) in [("one.amb", "-ab 1", false), ("two.amb", "-ab 2", true), ("all.amb", MIXED, false)] {
+        bench.trace(name, options);
+        let text = bench.run(env!("CARGO_BIN_EXE_lookamb"), name).stdout;
+        fs::write(bench.path("text"), text).unwrap();
+        let back = bench.run(env!("CARGO_BIN_EXE_lookamb"), "-r text");
+        let said = "lookamb: warning - text does not hold what the last bounces brought: values count as with --bounces \
+                    mixed\n";
+        assert_eq!(String::from_utf8_lossy(&back.stderr), if told { said } else { "" }, "{options}");
+        assert!(back.status.success() && back.stdout.len() > 2 * RECORD);
+    }
 }

@@ -314,7 +314,11 @@ fn errors_have_their_class_and_status() {
         ("-cs 2 scene.oct", "rtrace: fatal - unsupported spectral sampling", 1),
         ("@nofile", "rtrace: system - cannot expand '@nofile': No such file or directory", 2),
         ("none.oct", "rtrace: system - cannot open octree file \"none.oct\": No such file or directory", 2),
-        ("-e /nonexistent/x scene.oct", "", 2),
+        (
+            "-e /nonexistent/x scene.oct",
+            "rtrace: system - cannot open error file \"/nonexistent/x\": No such file or directory",
+            2,
+        ),
         ("-features Nope", "rtrace: missing feature - Nope", 1),
         ("-P file", "rtrace: fatal - persist mode (-P, -PP) without an octree is not supported", 1),
         ("-ovt scene.oct", "", 0),

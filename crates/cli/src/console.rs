@@ -26,9 +26,18 @@ impl ConsoleMessages {
         say(format_args!("{}: {text}", self.program));
     }
 
-    /// Prints why the program stops.
+    /// Prints why the program stops, and what may help.
     pub fn fail(&self, failure: &Failure) {
-        self.print(failure);
+        // Several lines show where in one of them the reason is: without a class word, as in Radiance, so that the mark
+        // stands below the place.
+        if failure.text.contains('\n') {
+            failure.text.lines().for_each(|line| self.print(line));
+        } else {
+            self.print(failure);
+        }
+        if let Some(hint) = &failure.hint {
+            self.print(hint);
+        }
     }
 }
 

@@ -41,6 +41,8 @@ pub struct Failure {
     pub class: Class,
     /// What went wrong.
     pub text: String,
+    /// What may help, for a line of its own: scripts compare the first line with Radiance's.
+    pub hint: Option<String>,
 }
 
 impl fmt::Display for Failure {
@@ -50,19 +52,30 @@ impl fmt::Display for Failure {
 }
 
 impl Failure {
+    /// An error of this class.
+    pub fn new(class: Class, text: impl Into<String>) -> Self {
+        Self { class, text: text.into(), hint: None }
+    }
+
     /// An error of the user.
     pub fn user(text: impl Into<String>) -> Self {
-        Self { class: Class::User, text: text.into() }
+        Self::new(Class::User, text)
+    }
+
+    /// The same with a hint.
+    #[must_use]
+    pub fn hint(self, hint: impl Into<String>) -> Self {
+        Self { hint: Some(hint.into()), ..self }
     }
 
     /// An error of the system, with what the system says about it.
     pub fn system(text: impl fmt::Display, error: &io::Error) -> Self {
-        Self { class: Class::System, text: format!("{text}: {}", ambit_file::os_text(error)) }
+        Self::new(Class::System, format!("{text}: {}", ambit_file::os_text(error)))
     }
 
     /// An error of ours.
     pub fn internal(text: impl Into<String>) -> Self {
-        Self { class: Class::Internal, text: text.into() }
+        Self::new(Class::Internal, text)
     }
 
     /// The one message for every option that is unknown or has a bad value.
@@ -88,7 +101,7 @@ impl From<ambit_file::Error> for Failure {
             ambit_file::Error::Io { .. } | ambit_file::Error::Expand { .. } => Class::System,
             _ => Class::User,
         };
-        Self { class, text: error.to_string() }
+        Self::new(class, error.to_string())
     }
 }
 

@@ -40,11 +40,13 @@ pub fn command<S>(about: &About, table: &[Row<S>]) -> Command {
         ("version", "print the version"),
         ("features", "print what this program can do (only as the first argument)"),
         ("help", "print this help"),
+        ("man", "print the manual page"),
     ];
     for (name, help) in own {
         command = command.arg(Arg::new(format!("own {name}")).long(name).help(help).action(ArgAction::SetTrue));
     }
-    command
+    let shells = "print completions for bash, zsh or fish";
+    command.arg(Arg::new("own completions").long("completions").value_name("SHELL").help(shells))
 }
 
 fn argument<S>(row: &Row<S>) -> Arg {

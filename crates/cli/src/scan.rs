@@ -114,18 +114,23 @@ impl Arguments<'_> {
 
     /// The next word as it stands; an error at `option` if there is none.
     fn text(&mut self, option: &str) -> Result<String, Failure> {
-        let word = self.rest.pop_front().filter(|w| is_text(w)).ok_or_else(|| Failure::at(option))?;
+        let word = self.rest.pop_front().ok_or_else(|| Failure::at(option).hint("a value is missing"))?;
+        if !is_text(&word) {
+            return Err(expected(option, &word, "printable ASCII characters"));
+        }
         self.read.push(word.clone());
         Ok(word)
     }
 
     fn real(&mut self, option: &str) -> Result<f64, Failure> {
         // Scripts that put their words together leave blanks around numbers, which Radiance passes over.
-        real(self.text(option)?.trim()).ok_or_else(|| Failure::at(option))
+        let word = self.text(option)?;
+        real(word.trim()).ok_or_else(|| expected(option, &word, "a number"))
     }
 
     fn integer(&mut self, option: &str) -> Result<i32, Failure> {
-        integer(self.text(option)?.trim()).ok_or_else(|| Failure::at(option))
+        let word = self.text(option)?;
+        integer(word.trim()).ok_or_else(|| expected(option, &word, "an integer"))
     }
 
     /// Reads one option with its values.
@@ -179,8 +184,23 @@ impl Arguments<'_> {
             self.flags.push(row.flag);
             return Ok(());
         }
-        Err(Failure::at(word))
+        Err(unknown(word, table))
     }
+}
+
+/// A value that an option can not take.
+fn expected(option: &str, word: &str, what: &str) -> Failure {
+    Failure::at(option).hint(format!("'{word}' (expected {what})"))
+}
+
+/// An option that is none, with the one that may have been meant: dashes are easily mistaken.
+fn unknown<S>(word: &str, table: &[Row<S>]) -> Failure {
+    let name = word.trim_start_matches('-');
+    let meant = table.iter().find(|row| row.flag.trim_start_matches('-') == name && row.flag != &word[1..]);
+    Failure::at(word).hint(match meant {
+        Some(row) => format!("expected '-{}'", row.flag),
+        None => "there is no such option; --help lists them".to_owned(),
+    })
 }
 
 /// Values are printable ASCII and not empty.

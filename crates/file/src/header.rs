@@ -63,6 +63,9 @@ impl Header {
                 .read_until(b'\n', &mut line)
                 .map_err(|e| Error::io("cannot read header of", file, e))?;
             size += n;
+            if size == 0 {
+                return Err(bad(file, "some text (there is nothing in it)"));
+            }
             if header.lines.is_empty() && !line.first().is_some_and(|b| (b' '..=b'~').contains(b)) {
                 return Err(bad(file, "a printable first character"));
             }
@@ -248,7 +251,7 @@ mod tests {
     fn broken_headers_are_named() {
         for (bytes, expected) in [
             (&b"\n\n"[..], "printable"),
-            (b"", "printable"),
+            (b"", "there is nothing in it"),
             (b"\tx\n\n", "printable"),
             (b"#?RADIANCE\nx", "empty line"),
             (b"#?RADIANCE\n", "empty line"),

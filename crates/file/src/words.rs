@@ -14,8 +14,13 @@ const FILE_LIMIT: u64 = 1 << 26;
 /// A real number as options write it: `[+-]digits[.digits][e[+-]digits]` with at least one digit before the exponent.
 /// `nan`, `inf`, `0x2`, and numbers too large for a double are none.
 pub fn real(word: &str) -> Option<f64> {
+    boundless_real(word).filter(|v| v.is_finite())
+}
+
+/// As [`real`], but numbers too large for a double are infinite: among the rays of a list they keep their place.
+pub fn boundless_real(word: &str) -> Option<f64> {
     let plain = word.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.' | b'e' | b'E'));
-    if plain { word.parse().ok().filter(|v: &f64| v.is_finite()) } else { None }
+    if plain { word.parse().ok() } else { None }
 }
 
 /// An integer as options write it: `[+-]digits`, within 32 bits as the programs hold it.

@@ -104,11 +104,11 @@ pub enum Error {
 #[non_exhaustive]
 pub enum Problem {
     /// The header is no header, or says that the file is something else.
-    #[error("not an octree")]
-    NotAnOctree,
+    #[error("not an octree{0}")]
+    NotAnOctree(Instead),
     /// Not the number every octree begins with.
-    #[error("incompatible octree format")]
-    IncompatibleOctree,
+    #[error("incompatible octree format{0}")]
+    IncompatibleOctree(Instead),
     /// The file ends too early.
     #[error("truncated octree")]
     TruncatedOctree,
@@ -179,6 +179,35 @@ pub enum Problem {
     /// More vertices than can be numbered.
     #[error("mesh too large")]
     MeshTooLarge,
+}
+
+/// What a file seems to be that should be an octree; prints as an addition to what is wrong.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Instead {
+    /// There is not a byte, as where the program failed that should have made it, or it is a directory.
+    #[error(" (nothing in it)")]
+    Nothing,
+    /// Text without a header, as scene files are.
+    #[error(" (no header; oconv makes octrees of scene files)")]
+    Text,
+    /// What its header says it is.
+    #[error(" (FORMAT={0})")]
+    Format(String),
+    /// Nothing that could be told.
+    #[error("")]
+    Unknown,
+}
+
+impl Instead {
+    /// What bytes begin like that are not an octree.
+    pub(crate) fn of(bytes: &[u8]) -> Self {
+        match bytes.first() {
+            None => Self::Nothing,
+            Some(b' '..=b'~' | b'\t' | b'\r' | b'\n') if !bytes.starts_with(b"#?") => Self::Text,
+            Some(_) => Self::Unknown,
+        }
+    }
 }
 
 /// What is wrong with a statement of an OBJ file.

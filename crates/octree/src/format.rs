@@ -1,7 +1,7 @@
 //! The parts that octree and mesh files share: the number they begin with, the cube and the tree.
 
 use crate::Cube;
-use crate::error::Problem;
+use crate::error::{Instead, Problem};
 use crate::tree::{DEEPEST, MOST_IN_SET};
 use ambit_file::Cursor;
 use std::io::{BufRead, Read};
@@ -28,7 +28,7 @@ const LONGEST_FRONT: u64 = 2 + 4 * 512;
 /// Octrees begin with 283 and the width of their object numbers.
 pub(crate) const OCTREE: Wording = Wording {
     magic: 283,
-    incompatible: Problem::IncompatibleOctree,
+    incompatible: Problem::IncompatibleOctree(Instead::Unknown),
     no_magic: Problem::TruncatedOctree,
     truncated: Problem::TruncatedOctree,
     damaged: Problem::DamagedOctree,

@@ -17,7 +17,7 @@ mod write;
 
 pub use build::{BuildError, Extended, Limits, build, extend};
 pub use cube::{Cube, MARGIN};
-pub use error::{Error, ObjProblem, Problem};
+pub use error::{Error, Instead, ObjProblem, Problem};
 pub use geometry::Geometry;
 pub use mesh::{CompiledMesh, MESH_LIMITS, Mesh, compile_mesh, read_mesh};
 pub use open::Source;

@@ -3,7 +3,7 @@
 //! The layout: header; number of the format; cube; names of scene files; count of objects; tree; and, in frozen
 //! octrees (those without names of scene files), the objects. Otherwise the scene files are read again.
 
-use crate::error::Problem;
+use crate::error::{Instead, Problem};
 use crate::format::{FileNode, OCTREE};
 use crate::tree::{self, Tree};
 use crate::{Cube, Error, frozen};
@@ -69,20 +69,25 @@ pub fn read_octree(
 
 /// The cube alone: all that is needed of an octree to place an instance of it.
 pub fn read_cube(input: &mut impl BufRead, name: &str) -> Result<Cube, Error> {
-    let header = Header::read(input, name).map_err(|_| Problem::NotAnOctree.of(name))?;
+    // A stream that fails has ended, as far as a file format is concerned.
+    let instead = Instead::of(input.fill_buf().unwrap_or_default());
+    let header = Header::read(input, name).map_err(|_| Problem::NotAnOctree(instead).of(name))?;
     check_format(&header, name)?;
     OCTREE.front_cube(input).map_err(|p| p.of(name))
 }
 
 fn header<'a>(bytes: &'a [u8], name: &str) -> Result<(Header, Cursor<'a>), Error> {
-    let (header, start) = Header::parse(bytes, name).map_err(|_| Problem::NotAnOctree.of(name))?;
+    let (header, start) = Header::parse(bytes, name).map_err(|_| Problem::NotAnOctree(Instead::of(bytes)).of(name))?;
     check_format(&header, name)?;
     Ok((header, Cursor::new(&bytes[start..])))
 }
 
 /// A file without `FORMAT=` may be an octree.
 fn check_format(header: &Header, name: &str) -> Result<(), Error> {
-    if header.format().is_some_and(|f| f != FORMAT) { Err(Problem::NotAnOctree.of(name)) } else { Ok(()) }
+    match header.format() {
+        Some(format) if format != FORMAT => Err(Problem::NotAnOctree(Instead::Format(format.to_owned())).of(name)),
+        _ => Ok(()),
+    }
 }
 
 fn read(
@@ -95,7 +100,11 @@ fn read(
 ) -> Result<Loaded, Error> {
     let wrong = |p: Problem| p.of(name);
     let (header, mut input) = header(bytes, name)?;
-    let width = OCTREE.width(&mut input).map_err(wrong)?;
+    let width = OCTREE.width(&mut input).map_err(|p| match p {
+        // Scene files whose first line is followed by an empty one pass for headers.
+        Problem::IncompatibleOctree(_) => wrong(Problem::IncompatibleOctree(Instead::of(bytes))),
+        other => wrong(other),
+    })?;
     let cube = OCTREE.cube(&mut input).map_err(wrong)?;
     let truncated = || Problem::TruncatedOctree.of(name);
     let mut scene_files = Vec::new();

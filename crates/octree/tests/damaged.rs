@@ -45,9 +45,14 @@ fn damage_is_named_as_radiance_names_it() {
     };
     let set = tree + 1;
     let cases: Vec<(Vec<u8>, &str)> = vec![
-        (Vec::new(), "(x.oct): not an octree"),
+        (Vec::new(), "(x.oct): not an octree (nothing in it)"),
         (text("#?RADIANCE", "\0?RADIANCE"), "(x.oct): not an octree"),
-        (text("Radiance_octree", "Radiance_tmesh"), "(x.oct): not an octree"),
+        (b"void light l\n".to_vec(), "(x.oct): not an octree (no header; oconv makes octrees of scene files)"),
+        (
+            b"# a scene\n\nvoid light l\n".to_vec(),
+            "(x.oct): incompatible octree format (no header; oconv makes octrees of scene files)",
+        ),
+        (text("Radiance_octree", "Radiance_tmesh"), "(x.oct): not an octree (FORMAT=Radiance_tmesh)"),
         (text("FORMAT=Radiance_octree\n", ""), ""),
         (good[..data].to_vec(), "(x.oct): truncated octree"),
         (patched(&good, data, &[1, 0x1b]), "(x.oct): incompatible octree format"),

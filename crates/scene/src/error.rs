@@ -1,6 +1,7 @@
 //! What can be wrong with a scene: one error type, worded as Radiance words it, with the place beside the text.
 
 use ambit_base::Location;
+use ambit_file::bytes_of;
 
 /// Whose fault an error is; the tools turn it into the class word and the exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +61,7 @@ pub enum ErrorKind {
         word: String,
     },
     /// A modifier that was not defined before its use.
-    #[error("({file}): undefined modifier \"{word}\"")]
+    #[error("({file}): undefined modifier \"{word}\"{}", mark(word))]
     UndefinedModifier {
         /// File or command.
         file: String,
@@ -128,6 +129,19 @@ pub enum ErrorKind {
     /// An auxiliary file (data, font) that cannot be read as what it should be.
     #[error("{0}")]
     Auxiliary(AuxiliaryProblem),
+}
+
+/// What to say of a word that begins with the mark of an encoding: editors put it before the first word of a file, where
+/// nobody sees it.
+fn mark(word: &str) -> &'static str {
+    let bytes = bytes_of(word);
+    if bytes.starts_with(b"\xef\xbb\xbf") {
+        " (begins with a byte order mark: save the file without one)"
+    } else if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        " (UTF-16: save the file as plain text)"
+    } else {
+        ""
+    }
 }
 
 /// What is wrong with an auxiliary file.

@@ -23,7 +23,8 @@ into an ambient file. Without FILE: standard input.
              direction, directions left out (corral); without it, labelled lines
   -h         no header
   -r         the reverse: text (labelled, or with -d lines of numbers; with -h without
-             a header) becomes an ambient file
+             a header) becomes an ambient file. Text does not hold what the last bounces
+             brought: such values count as Radiance's do (--bounces mixed)
   --help     print this text
   --version  print the version
 ";
@@ -120,6 +121,12 @@ fn kept(header: &Header) -> Header {
     out
 }
 
+/// Whether the records of the file that the text was made of told what the last bounces brought, which text leaves out.
+fn tells_bounces(header: &Header) -> bool {
+    let has = |word: &str| header.values("AMBIT_OPTIONS").any(|v| v.split(' ').any(|w| w == word));
+    has("bounces=apart") && !has("ab=1")
+}
+
 fn to_text(bytes: &[u8], name: &str, options: Options, out: &mut impl Write) -> Result<(), Failure> {
     let (header, layout, start) = scan_header(bytes, name).map_err(Failure::Format)?;
     if options.header {
@@ -158,11 +165,16 @@ impl Colours {
 
 fn to_binary(bytes: &[u8], name: &str, options: Options, line: &[u8], out: &mut impl Write) -> Result<(), Failure> {
     let (mut header, start) = if options.header {
-        let (header, start) = Header::parse(bytes, name).map_err(|e| Failure::Format(e.to_string()))?;
+        let (header, start) = Header::parse(bytes, name).map_err(|e| Failure::Format(e.problem()))?;
         if let Some(format) = header.format()
             && format != "ascii"
         {
             return Err(Failure::Format(format!("FORMAT={format} (expected ascii)")));
+        }
+        if tells_bounces(&header) {
+            say(
+                "lookamb: warning - text does not hold what the last bounces brought: values count as with --bounces mixed",
+            );
         }
         (kept(&header), start)
     } else {

@@ -82,7 +82,9 @@ fn parse(arguments: &[String]) -> Result<Asked, Failure> {
             "-r" => request.limits.resolution = number(word, &value()?)?.max(1),
             "-v" => request.verbose = true,
             "-w" => request.quiet = true,
-            _ if word.starts_with('-') => return Err(Failure::user(format!("unknown option: '{word}'"))),
+            _ if word.starts_with('-') => {
+                return Err(Failure::user(format!("unknown option: '{word}'")).hint("--help lists the options"));
+            }
             _ if request.input.is_none() => request.input = Some(word.clone()),
             _ if request.output.is_none() => (request.output, request.told) = (Some(word.clone()), at),
             _ => return Err(Failure::user("too many file arguments")),
@@ -152,5 +154,5 @@ fn failure(e: &Error) -> Failure {
         Error::Write(e) => format!("output error in writescene: {}", os_text(e)),
         _ => e.to_string(),
     };
-    Failure { class, text }
+    Failure::new(class, text)
 }

@@ -2,10 +2,11 @@
 
 use ambit_base::{DVec3, Location, Notify};
 use ambit_cli::{Class, ConsoleMessages, Failure, StandardOutput, VERSION, answer};
-use ambit_file::{Header, Library, SearchPath, bytes_of, command_line, variable, word_of};
+use ambit_file::{Header, Library, SearchPath, bytes_of, command_line, path_of, variable, word_of};
 use ambit_octree::{Cube, Error, Find, Limits, Objects, Prepared, Source, Tree};
 use ambit_scene::{ErrorClass, Reader, Scene, Shell};
-use std::io::BufWriter;
+use std::fs::File;
+use std::io::{BufRead, BufReader, BufWriter};
 use std::process::ExitCode;
 
 const HELP: &str = "\
@@ -45,9 +46,35 @@ fn main() -> ExitCode {
             messages.fail(&stop.failure);
             if let Some(place) = stop.place.filter(|p| p.line > 0) {
                 messages.print(format_args!("at {place}"));
+                if let Some(format) = format_of(&place.file) {
+                    messages.print(format_args!("this is a file of FORMAT={format}, not a scene{}", remedy(&format)));
+                }
             }
             ExitCode::from(stop.failure.class.status())
         }
+    }
+}
+
+/// What the header of a file says that it is; none for scenes, which have no header.
+fn format_of(file: &str) -> Option<String> {
+    let path = path_of(file);
+    // A pipe has been read already.
+    if !path.is_file() {
+        return None;
+    }
+    let mut input = BufReader::new(File::open(path).ok()?);
+    if !input.fill_buf().ok()?.starts_with(b"#?") {
+        return None;
+    }
+    Header::read(&mut input, file).ok()?.format().map(str::to_owned)
+}
+
+/// How a scene takes a file of this format in.
+fn remedy(format: &str) -> &'static str {
+    match format {
+        "Radiance_octree" => "; -i adds to an octree, and the primitive instance places one",
+        "Radiance_tmesh" => "; the primitive mesh places one",
+        _ => "",
     }
 }
 
@@ -72,7 +99,7 @@ impl From<Error> for Stop {
             ErrorClass::System => Class::System,
             ErrorClass::Internal => Class::Internal,
         };
-        Self { failure: Failure { class, text: e.to_string() }, place }
+        Self { failure: Failure::new(class, e.to_string()), place }
     }
 }
 
@@ -133,7 +160,9 @@ fn parse(arguments: &[String]) -> Result<Asked, Failure> {
             Some(b'r') => request.limits.resolution = number(word, value()?)? as i64,
             Some(b'f') => request.frozen = true,
             Some(b'w') => request.quiet = true,
-            _ => return Err(Failure::user(format!("unknown option: '{word}'"))),
+            _ => {
+                return Err(Failure::user(format!("unknown option: '{word}'")).hint("--help lists the options"));
+            }
         }
     }
     request.files = words.cloned().collect();

@@ -81,25 +81,30 @@ impl Frame {
         if let Some(file) = &options.recover
             && let Some(path) = recover::set_aside(picture.session, file, options.output.as_deref())?
         {
-            recovered = recover::read(picture.session, path, picture.space);
+            recovered = recover::read(picture.session, file, path, picture.space);
         }
-        let view = recovered.as_ref().map_or(&options.view, |r| &r.view);
+        let view = recovered.as_ref().and_then(|r| r.view.as_ref()).unwrap_or(&options.view);
         let mut frame = Self::new(set_up(view)?, options);
         // The names of a sequence's pictures, without one: its number is 0.
         let named = |pattern: &Option<String>| pattern.as_ref().map(|p| numbered(p, 0));
         (frame.output, frame.distances) = (named(&options.output), named(&options.distances));
-        frame.take_over(recovered);
+        frame.take_over(recovered)?;
         Ok(frame)
     }
 
-    /// Takes over size and lines of an interrupted picture.
-    pub(crate) fn take_over(&mut self, recovered: Option<Recovered>) {
+    /// Takes over size and lines of an interrupted picture. One that does not tell its view has to be as large as the
+    /// options say.
+    pub(crate) fn take_over(&mut self, recovered: Option<Recovered>) -> Result<(), Failure> {
         if let Some(r) = &recovered {
+            if r.view.is_none() && r.size != (self.width, self.height) {
+                return Err(r.mismatch());
+            }
             (self.width, self.height) = r.size;
             // What the view and the size come to, whatever was asked for then.
             self.pixel_aspect = fit_resolution(self.view.aspect(), 0.0, self.width, self.height).pixel_aspect;
         }
         self.recovered = recovered;
+        Ok(())
     }
 }
 

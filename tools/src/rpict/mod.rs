@@ -12,7 +12,7 @@ mod watch;
 use crate::colour::Conversion;
 use crate::light::{Scene, octree};
 use crate::session::{Session, Stop, Tool, split};
-use crate::threads::{on_deep_stack, processors};
+use crate::threads::{on_deep_stack, processors, start_threads};
 use ambit_base::Notify;
 use ambit_cli::{About, COMMON_FEATURES, Failure, Features, Output, PICTURE_FEATURES, PictureOptions, picture_table};
 use ambit_file::PixelSpace;
@@ -91,17 +91,15 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         if options.recover.is_some() {
             return Err(Failure::user("persist option used with recover file").into());
         }
-        if session.octree.is_none() {
-            session.prepare(&options.common)?;
-        }
     }
+    session.refuse_attachment(&options.common)?;
     if options.sequence > 0 {
         if session.octree.is_none() {
             return Err(Failure::user("missing octree argument").into());
         }
         sequence::check(&options)?;
     }
-    session.prepare(&options.common)?;
+    start_threads(options.common.threads())?;
     let source = source(session)?;
     let name = source.name.clone();
     let mut scene = Scene::open(session, source, &options.rendering, false, options.common.output)?;

@@ -30,9 +30,9 @@ pub(super) fn choose(
 
 /// The view, which a recovered picture brings along.
 fn view(session: &Session, options: &PictureOptions, space: PixelSpace) -> Result<Projection, Stop> {
-    let path = options.recover.as_deref().map(path_of).filter(|path| path.exists());
-    let recovered = path.and_then(|path| recover::read(session, path, space));
-    Ok(set_up(recovered.as_ref().map_or(&options.view, |r| &r.view))?)
+    let file = options.recover.as_deref().filter(|file| path_of(file).exists());
+    let recovered = file.and_then(|file| recover::read(session, file, path_of(file), space));
+    Ok(set_up(recovered.and_then(|r| r.view).as_ref().unwrap_or(&options.view))?)
 }
 
 /// The pixels of the pilot; those outside the view are black, as in the picture.

@@ -10,14 +10,28 @@ use std::path::{Path, PathBuf};
 
 /// What an interrupted picture still has.
 pub(crate) struct Recovered {
+    /// What the user calls the file.
+    called: String,
     /// The file, to be removed when its lines have been copied; none if they cannot be.
     pub(crate) file: Option<PathBuf>,
-    /// Its view.
-    pub(crate) view: View,
+    /// Its view, if its header has one.
+    pub(crate) view: Option<View>,
     /// Width and height.
     pub(crate) size: (u32, u32),
     /// Scanlines that are whole, from the top.
     pub(crate) lines: Vec<Vec<[u8; 4]>>,
+}
+
+impl Recovered {
+    /// The error of one that is not as large as it must be. Its file has its name back, for another try.
+    pub(crate) fn mismatch(&self) -> Failure {
+        let path = path_of(&self.called);
+        if let Some(file) = self.file.as_ref().filter(|&file| *file != path) {
+            // Without it the file stays where warnings have told.
+            _ = fs::rename(file, path);
+        }
+        Failure::user(format!("resolution mismatch in recover file \"{}\"", self.called))
+    }
 }
 
 /// Moves the file out of the way if the new picture will have its name. Returns its name from now on, `None` if there
@@ -57,7 +71,8 @@ fn spare_name(folder: &Path, seed: u32) -> PathBuf {
 }
 
 /// Reads what is there, with Radiance's warnings if nothing is.
-pub(crate) fn read(session: &Session, file: PathBuf, space: PixelSpace) -> Option<Recovered> {
+pub(crate) fn read(session: &Session, called: &str, file: PathBuf, space: PixelSpace) -> Option<Recovered> {
+    let called = called.to_owned();
     let name = name_of(&file).into_owned();
     let warn = |text: String| session.messages.warn(&text);
     let Ok(open) = File::open(&file) else {
@@ -65,12 +80,14 @@ pub(crate) fn read(session: &Session, file: PathBuf, space: PixelSpace) -> Optio
         warn(format!("cannot open recover file \"{name}\""));
         return None;
     };
+    let reader = PictureReader::new(BufReader::new(open), &name).ok();
     let mut view = View::default();
-    let reader = PictureReader::new(BufReader::new(open), &name)
-        .ok()
-        .filter(|reader| view.apply_header(&reader.header, &session.program) > 0);
-    let Some(mut reader) = reader else {
+    let told = reader.as_ref().is_some_and(|reader| view.apply_header(&reader.header, &session.program) > 0);
+    if !told {
         warn(format!("cannot recover view parameters from \"{name}\""));
+    }
+    let view = told.then_some(view);
+    let Some(mut reader) = reader else {
         warn(format!("bad recover file \"{name}\" - not removed"));
         return None;
     };
@@ -80,11 +97,11 @@ pub(crate) fn read(session: &Session, file: PathBuf, space: PixelSpace) -> Optio
     if resolution.orientation != Orientation::TEXT || reader.space != space {
         // Turned or mirrored since it was made, or in other colours: its view and its size serve, its lines do not.
         warn(format!("bad recover file \"{name}\" - not removed"));
-        return Some(Recovered { file: None, view, size, lines });
+        return Some(Recovered { called, file: None, view, size, lines });
     }
     // A line that was cut off is no line.
     while let Ok(Some(line)) = reader.next_codes() {
         lines.push(line.to_vec());
     }
-    Some(Recovered { file: Some(file), view, size, lines })
+    Some(Recovered { called, file: Some(file), view, size, lines })
 }

@@ -52,7 +52,8 @@ pub(crate) fn run(picture: &Picture<'_>, scene: &mut Scene<'_>, mut views: impl 
         previous = Some(projection);
         number += 1;
     }
-    if recovering.is_some_and(|k| number <= k) {
+    // The frame after the last one was not begun: there is nothing to go on with, and nothing wrong.
+    if recovering.is_some_and(|k| number < k) {
         return Err(Failure::user("unexpected EOF on view input").into());
     }
     if !made {
@@ -71,7 +72,7 @@ fn plan(picture: &Picture<'_>, view: ambit_file::Projection, number: i32, recove
         let name = numbered(pattern, number);
         if recovers {
             let aside = recover::set_aside(picture.session, &name, Some(&name))?;
-            frame.take_over(aside.and_then(|path| recover::read(picture.session, path, picture.space)));
+            frame.take_over(aside.and_then(|path| recover::read(picture.session, &name, path, picture.space)))?;
         } else {
             frame.shared = name != *pattern;
         }

@@ -2,6 +2,7 @@
 
 use ambit_base::DVec3;
 use ambit_cli::InputFormat;
+use ambit_file::boundless_real;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 use std::io::{self, BufRead, BufReader, Read};
@@ -69,12 +70,13 @@ const BUFFER: usize = 1 << 16;
 pub(crate) struct RayReader<R> {
     input: BufReader<R>,
     format: InputFormat,
+    odd: Option<String>,
 }
 
 impl<R: Awaited> RayReader<R> {
     /// Rays of a format from a stream.
     pub(crate) fn new(input: R, format: InputFormat) -> Self {
-        Self { input: BufReader::with_capacity(BUFFER, input), format }
+        Self { input: BufReader::with_capacity(BUFFER, input), format, odd: None }
     }
 
     /// True if no whole ray is left of what was read, and the rest of the next one, or the end, has to be waited for.
@@ -93,9 +95,9 @@ impl<R: Awaited> RayReader<R> {
     /// incomplete last ray is dropped.
     pub(crate) fn next(&mut self) -> Option<(DVec3, DVec3)> {
         let mut v = [0.0; 6];
-        for x in &mut v {
+        for (i, x) in v.iter_mut().enumerate() {
             *x = match self.format {
-                InputFormat::Ascii => number(&self.word()?)?,
+                InputFormat::Ascii => self.number(i)?,
                 InputFormat::Float => {
                     let mut bytes = [0; 4];
                     self.input.read_exact(&mut bytes).ok()?;
@@ -110,6 +112,25 @@ impl<R: Awaited> RayReader<R> {
         }
         let [ox, oy, oz, dx, dy, dz] = v;
         Some((DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz)))
+    }
+
+    /// What is odd about where text ends to be rays, if anything is. Radiance says nothing: lists with commas, or with a
+    /// line of titles, come to nothing there.
+    pub(crate) fn odd(&self) -> Option<&str> {
+        self.odd.as_deref()
+    }
+
+    /// Number `i` of a ray.
+    fn number(&mut self, i: usize) -> Option<f64> {
+        let Some(word) = self.word() else {
+            self.odd = (i > 0).then(|| format!("last ray has {i} numbers of 6, and is left out"));
+            return None;
+        };
+        let number = boundless_real(&word);
+        if number.is_none() {
+            self.odd = Some(format!("rays end at \"{word}\" (expected a number)"));
+        }
+        number
     }
 
     /// The next word: up to white space, or what stands between quotes.
@@ -158,11 +179,6 @@ impl<R: Awaited> RayReader<R> {
     }
 }
 
-/// A number as options write it, or one too large to be held, which keeps its place in the count of rays.
-fn number(word: &str) -> Option<f64> {
-    word.parse().ok().filter(|_| word.contains(|c: char| c.is_ascii_digit()))
-}
-
 fn is_space(byte: u8) -> bool {
     byte.is_ascii_whitespace() || byte == 0x0b
 }
@@ -192,6 +208,21 @@ mod tests {
         for bad in ["nan", "inf", "0x2", "foo", "#", "1,", "1d0"] {
             assert_eq!(rays(&format!("1 2 3 4 5 6 7 8 9 {bad} 1 1 1 2 3 4 5 6")).len(), 1, "{bad}");
         }
+    }
+
+    #[test]
+    fn what_rays_end_with_is_kept() {
+        let odd = |text: &str| {
+            let mut reader = RayReader::new(text.as_bytes(), InputFormat::Ascii);
+            while reader.next().is_some() {}
+            reader.odd().map(str::to_owned)
+        };
+        let word = |w: &str| Some(format!("rays end at \"{w}\" (expected a number)"));
+        assert_eq!(odd("1 2 3 4 5 6\n"), None);
+        assert_eq!(odd(""), None);
+        assert_eq!(odd("x,y,z,dx,dy,dz\n1 2 3 4 5 6\n"), word("x,y,z,dx,dy,dz"));
+        assert_eq!(odd("1 2 3 4 5 6 7 8 9 nan 1 1"), word("nan"));
+        assert_eq!(odd("1 2 3 4 5 6\n1 2 3\n"), Some("last ray has 3 numbers of 6, and is left out".to_owned()));
     }
 
     #[test]

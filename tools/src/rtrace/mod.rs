@@ -10,7 +10,7 @@ mod tree;
 use crate::light::{self, Scene};
 use crate::session::{Session, Stop, Tool, split};
 use crate::spectral::Converter;
-use crate::threads::{on_deep_stack, processors};
+use crate::threads::{on_deep_stack, processors, start_threads};
 use ambit_base::Notify;
 use ambit_cli::{
     About, COMMON_FEATURES, Failure, Features, Field, OutputFormat, OutputSpec, RAY_FEATURES, RayOptions,
@@ -61,12 +61,12 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
         session.messages.warn("spectral range incompatible with color output");
     }
     session.attach(&options.common)?;
+    session.refuse_attachment(&options.common)?;
     let Some(octree) = session.octree.clone() else {
-        session.prepare(&options.common)?;
         return Err(Failure::user("missing octree argument").into());
     };
     let job = Job::new(&options, session)?;
-    session.prepare(&options.common)?;
+    start_threads(options.common.threads())?;
     let source = light::octree(&octree)?;
     let mut scene = Scene::open(session, source, &options.rendering, !job.spec.shades(), options.common.output)?;
     // Not by way of Rust's own buffer, of which a poll knows nothing.
@@ -161,9 +161,12 @@ impl Job {
         written.map_err(|e| Stop::writing("write error", &e))?;
         let records = RecordWriter::new(&self.spec.fields, &self.conversion, options);
         let tree = self.spec.tree.as_ref().map(|t| TreeWriter::new(t, &self.conversion, options));
-        let reader = RayReader::new(input, options.input);
+        let mut rays = RayReader::new(input, options.input);
         let complete =
-            stream::Stream::new(options, &self.spec).run(reader, &records, tree.as_ref(), scene, &mut out)?;
+            stream::Stream::new(options, &self.spec).run(&mut rays, &records, tree.as_ref(), scene, &mut out)?;
+        if let Some(odd) = rays.odd() {
+            session.messages.warn(odd);
+        }
         if !complete {
             session.messages.warn("unexpected EOF on input");
         }

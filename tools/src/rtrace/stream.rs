@@ -62,7 +62,7 @@ impl Stream {
     /// Answers rays until they end. Returns false if more were promised (`-y`).
     pub(crate) fn run<R: Awaited>(
         &self,
-        rays: RayReader<R>,
+        rays: &mut RayReader<R>,
         records: &RecordWriter<'_>,
         tree: Option<&TreeWriter<'_>>,
         light: &mut dyn Light,
@@ -78,7 +78,7 @@ impl Stream {
     /// As [`Self::run`]; what is left in `bytes` has not been written.
     fn answer<R: Awaited>(
         &self,
-        mut rays: RayReader<R>,
+        rays: &mut RayReader<R>,
         records: &RecordWriter<'_>,
         tree: Option<&TreeWriter<'_>>,
         light: &mut dyn Light,
@@ -287,8 +287,8 @@ mod tests {
         let records = RecordWriter::new(&spec.fields, &converter, &options);
         let mut out = Pieces(Vec::new());
         let mut light = Plain { log: Rc::default(), left: (0, 0) };
-        let rays = RayReader::new(input, InputFormat::Ascii);
-        let result = Stream::new(&options, &spec).run(rays, &records, None, &mut light, &mut out);
+        let mut rays = RayReader::new(input, InputFormat::Ascii);
+        let result = Stream::new(&options, &spec).run(&mut rays, &records, None, &mut light, &mut out);
         (out.0, result)
     }
 
@@ -340,9 +340,9 @@ mod tests {
         let records = RecordWriter::new(&spec.fields, &converter, &options);
         let log = Rc::new(RefCell::new(Vec::new()));
         let mut out = Watched(Rc::clone(&log), Vec::new(), 0);
-        let rays = RayReader::new(input.as_bytes(), InputFormat::Ascii);
+        let mut rays = RayReader::new(input.as_bytes(), InputFormat::Ascii);
         let mut light = Plain { log: Rc::clone(&log), left: (0, 0) };
-        let complete = Stream::new(&options, &spec).run(rays, &records, None, &mut light, &mut out).unwrap();
+        let complete = Stream::new(&options, &spec).run(&mut rays, &records, None, &mut light, &mut out).unwrap();
         let values = out.1.chunks_exact(4).map(|b| f32::from_ne_bytes(b.try_into().unwrap())).collect();
         let log = log.borrow().clone();
         (log, values, complete)

@@ -33,7 +33,7 @@ pub struct Contents {
 /// Understands the start of an ambient file: its header, layout, and where the first record begins. The error says what
 /// was found and what was expected.
 pub fn scan_header(bytes: &[u8], file: &str) -> Result<(Header, Layout, usize), String> {
-    let (header, data) = Header::parse(bytes, file).map_err(|e| e.to_string())?;
+    let (header, data) = Header::parse(bytes, file).map_err(|e| e.problem())?;
     if let Some(format) = header.format()
         && format != FORMAT
     {
