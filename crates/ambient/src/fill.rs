@@ -45,6 +45,10 @@ impl Cache {
         let window = WINDOW * usize::from(self.params.passes.max(1));
         for level in levels {
             let at: Vec<usize> = (0..misses.len()).filter(|&k| misses[k].query.level == level).collect();
+            if level == 0 {
+                // What is asked in several passes is one query.
+                self.worth.expect(at.iter().filter(|&&k| misses[k].query.pass == 0).count().min(WINDOW));
+            }
             for (number, window) in at.chunks(window).enumerate() {
                 self.window(sampler, misses, level, window, number > 0, &mut values);
             }
@@ -69,9 +73,6 @@ impl Cache {
                 values[k] = fallback.into();
             }
             return;
-        }
-        if level == 0 {
-            self.worth.asked(window.len());
         }
         let mut open = window.to_vec();
         if stale {

@@ -121,10 +121,7 @@ impl<S: Sampler> Round<'_, S> {
         let weight = self.cache.limits.record_weight(query.level, query.weight);
         let stream = Stream::new(0, key(query, params.seed));
         let plan = match self.kept {
-            Kept::Yes => {
-                let share = self.cache.worth.share(query.level, weight);
-                Hemisphere::new(params, share, 1.0, query.normal, stream, true)
-            }
+            Kept::Yes => Hemisphere::new(params, self.share(query), 1.0, query.normal, stream, true),
             Kept::No => Hemisphere::few(params, weight / RENT as f32, query.normal, stream),
         };
         // A cache without divisions ends before this.
@@ -180,9 +177,7 @@ impl<S: Sampler> Round<'_, S> {
 
     /// Where a hemisphere takes extra samples: where cells differ from their neighbours.
     fn extras(&self, query: &Query<S::Origin>, plan: &Hemisphere, cells: &[Cell]) -> Vec<Extra> {
-        let weight = self.cache.limits.record_weight(query.level, query.weight);
-        let share = self.cache.worth.share(query.level, weight);
-        let budget = budget(self.cache.params.super_samples, share, plan.grid().side());
+        let budget = budget(self.cache.params.super_samples, self.share(query), plan.grid().side());
         if budget == 0 || cells.iter().any(|c| c.distance <= 0.0) {
             return Vec::new();
         }
@@ -239,6 +234,11 @@ impl<S: Sampler> Round<'_, S> {
             Some(components) => outcome.quantised(query, components),
             None => outcome,
         }
+    }
+
+    /// The share of `-ad` and `-as` that a query's record gets.
+    fn share(&self, query: &Query<S::Origin>) -> f32 {
+        self.cache.worth.share(query.level, self.cache.limits.record_weight(query.level, query.weight))
     }
 
     /// The passes that a hemisphere's samples are traced in: all that a record has values of, or the one that asks.

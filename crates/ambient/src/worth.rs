@@ -1,33 +1,38 @@
 //! How many samples the hemispheres of deeper records are worth.
 //!
 //! Let n hemispheres of N samples each answer what is seen directly, and M records of a further bounce with N' samples
-//! each what those samples ask. The noise of a value is that of its own samples and, of each record, its part of them, about
-//! 1/M: `a N⁻ᵖ + b N'⁻ᵠ / M`. The samples taken are `n N + M N'`. So the least noise for as many samples has N' in proportion to
-//! `(√n / M)^(2/(q+1))`: the more records share a value and the fewer hemispheres share a record, the less each of them is worth.
-//! Samples chosen at random had q = 1, evenly spread ones have more, up to 2; radii and gradients need samples, too. [`POWER`] and
-//! [`MOST`] are what served best in eight scenes, sensors and pictures.
+//! each what those samples ask. The noise of a value is that of its own samples and, of each record, its part of them,
+//! about 1/M: `a N⁻ᵖ + b N'⁻ᵠ / M`. The samples taken are `n N + M N'`. So the least noise for as many samples has N' in
+//! proportion to `(√n / M)^(2/(q+1))`: the more records share a value and the fewer hemispheres share a record, the less
+//! each of them is worth. The model alone gives powers of .67 (evenly spread samples, q = 2) to 1 (random ones, q = 1);
+//! [`POWER`] and [`SCALE`] are what served best, sensors and pictures, for radii and gradients need samples, too.
+//!
+//! n and M are those of the whole scene so far, for it is not known which records a value shares. In a building of many
+//! rooms alike both grow with the rooms, and their ratio is too small: [`LEAST`] bounds what that can do.
 //!
 //! Records are counted between rounds, so that the answer depends neither on threads nor on time.
 
-/// The power of √n / M: q is 2.3.
+/// The power of √n / M.
 const POWER: f32 = 0.6;
-/// The share of samples, per weight of the record, where M is √n.
-const MOST: f32 = 4.0;
+/// The share of samples, per weight of the record, that the power is multiplied by.
+const SCALE: f32 = 4.0;
+/// The least share, over the greatest.
+const LEAST: f32 = 0.25;
 
 /// What is known of the numbers of hemispheres.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Worth {
     /// Records by level.
     records: Vec<u32>,
-    /// Questions of level 0 that are resolved together now; those of them that become records are counted twice, which the
-    /// root forgives.
-    asked: usize,
+    /// Queries of level 0 that are resolved together now: they become records, or are answered by those of others. With
+    /// the records there are already they are n, so that it is never too small; the root lessens what is counted twice.
+    open: usize,
 }
 
 impl Worth {
-    /// So many questions of level 0 are about to be resolved.
-    pub(crate) fn asked(&mut self, questions: usize) {
-        self.asked = questions;
+    /// So many queries of level 0 are about to be resolved.
+    pub(crate) fn expect(&mut self, queries: usize) {
+        self.open = queries;
     }
 
     /// There is one record more.
@@ -48,8 +53,8 @@ impl Worth {
             return square;
         }
         let of = |level: u8| self.records.get(usize::from(level)).copied().unwrap_or(0) as f32;
-        let (seen, records) = ((of(0) + self.asked as f32).max(1.0), of(level).max(1.0));
-        square.min(MOST * weight * (seen.sqrt() / records).powf(POWER))
+        let (seen, records) = ((of(0) + self.open as f32).max(1.0), of(level).max(1.0));
+        (SCALE * weight * (seen.sqrt() / records).powf(POWER)).clamp(LEAST * square, square)
     }
 }
 
@@ -60,22 +65,24 @@ mod tests {
     #[test]
     fn the_more_records_share_a_value_the_fewer_samples_each_gets() {
         let mut worth = Worth::default();
-        worth.asked(100);
+        worth.expect(100);
         let mut last = worth.share(1, 0.5);
         assert_eq!(last, 0.25, "the first get the square of their weight");
         for made in 1..=10_000 {
             worth.made(1);
             let share = worth.share(1, 0.5);
-            assert!(share <= last && share > 0.0);
+            assert!(share <= last);
             last = share;
             assert!(made == 320 || (share == 0.25) == (made < 320), "up to 32 √n: {share} at {made}");
+            if made == 1000 {
+                // 2 (10 / 1000)^.6
+                assert!((share - 0.126_191_47).abs() < 1e-6, "{share}");
+            }
         }
-        // 2 (10 / 10 000)^.6
-        assert!((last - 0.031_697_86).abs() < 1e-6, "{last}");
-        // More questions, or records that were asked by others, are worth more.
-        worth.asked(10_000);
-        assert!(worth.share(1, 0.5) > last);
-        assert_eq!(worth.share(0, 1.0), 1.0);
-        assert_eq!(worth.share(2, 0.25), 0.0625, "another level");
+        assert_eq!(last, 0.0625, "a quarter of that at least");
+        worth.expect(1_000_000);
+        assert!(worth.share(1, 0.5) > last, "they are worth more to more hemispheres");
+        assert_eq!(worth.share(0, 1.0), 1.0, "what is seen directly gets all");
+        assert_eq!(worth.share(2, 0.25), 0.0625, "other levels count by themselves");
     }
 }

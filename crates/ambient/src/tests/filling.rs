@@ -54,7 +54,7 @@ fn reference(params: Params, room: &Room, side: u32) -> Run {
     let mut cache = Cache::new(params, DVec3::splat(-0.01), 1.02);
     let mut samples = [0; 16];
     let pixels = room.pixels(side);
-    cache.worth.asked(pixels.len());
+    cache.worth.expect(pixels.len());
     let values = pixels.iter().map(|m| serial::ask(&mut cache, room, &m.query, &mut samples).value).collect();
     Run { values, cache_hash: hash(&cache), records: cache.records().len(), samples: samples.iter().sum() }
 }
@@ -146,6 +146,24 @@ fn levels_and_weights_halve() {
         assert!(of.clone().all(|r| r.weight == 0.5f32.powi(i32::from(level))));
     }
     assert!(cache.records().iter().all(|r| r.level < 3));
+}
+
+#[test]
+fn the_more_records_share_a_value_the_fewer_samples_each_has() {
+    let room = Room::new();
+    let samples = |accuracy: f64, side: u32| {
+        let mut cache = Cache::new(Params { divisions: 1024, accuracy, ..params(2) }, DVec3::splat(-0.01), 1.02);
+        cache.resolve(&room, &room.pixels(side));
+        let deeper = cache.records().iter().filter(|r| r.level == 1).count();
+        (deeper, cache.statistics().samples[1] as f64 / deeper as f64)
+    };
+    // The first ones have 256, the last ones of many a quarter of that.
+    let (many, few) = (samples(0.1, 1), samples(0.6, 1));
+    assert!(many.0 > 5 * few.0, "{many:?}, {few:?}");
+    assert!((64.0..110.0).contains(&many.1) && (180.0..257.0).contains(&few.1), "{many:?}, {few:?}");
+    // More points that they serve are worth more.
+    let (one, all) = (samples(0.3, 1), samples(0.3, 12));
+    assert!(all.0 > 3 * one.0 && all.1 > 1.4 * one.1, "{all:?}, of one point {one:?}");
 }
 
 #[test]
