@@ -14,9 +14,10 @@
 //! Records, radii, weights and limits are those of Radiance 6.0a, whose ambient files are read and written. Where it is
 //! known to be wrong without need, this crate differs: gradients of uniform surroundings are zero (the sample mesh is
 //! continued to the horizon), triangles of that mesh have the mean of connected surfaces, deeper questions are answered
-//! without the bounces that are not left at their level, a wall beside a point is no ceiling that makes probes useless, the axes of mixed curvatures are right, the rotational gradient has finite variance,
-//! corralled records answer at their own place, black hemispheres have radii from the distances around them, and
-//! thresholds scale with the scene.
+//! without the bounces that are not left at their level, deeper hemispheres have the samples that they are worth, a wall
+//! beside a point is no ceiling that makes probes useless, the axes of mixed curvatures are right, the rotational
+//! gradient has finite variance, corralled records answer at their own place, black hemispheres have radii from the
+//! distances around them, and thresholds scale with the scene.
 
 mod average;
 mod awake;
