@@ -133,7 +133,7 @@ fn places_in_expressions_are_marked_below_them() {
 }
 
 #[test]
-fn text_that_stops_to_be_rays_is_a_warning() {
+fn text_that_stops_being_rays_is_a_warning() {
     let folder = bench();
     let ray = "0 0 0 0 1 0\n";
     for (input, text, records) in [

@@ -91,7 +91,7 @@ impl<R: Awaited> RayReader<R> {
         !whole && self.input.get_ref().waits()
     }
 
-    /// Origin and direction of the next ray. `None` at the end of the input, or where it stops to be numbers; an
+    /// Origin and direction of the next ray. `None` at the end of the input, or where it stops being numbers; an
     /// incomplete last ray is dropped.
     pub(crate) fn next(&mut self) -> Option<(DVec3, DVec3)> {
         let mut v = [0.0; 6];
@@ -114,7 +114,7 @@ impl<R: Awaited> RayReader<R> {
         Some((DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz)))
     }
 
-    /// What is odd about where text ends to be rays, if anything is. Radiance says nothing: lists with commas, or with a
+    /// What is odd about where text stops being rays, if anything is. Radiance says nothing: lists with commas, or with a
     /// line of titles, come to nothing there.
     pub(crate) fn odd(&self) -> Option<&str> {
         self.odd.as_deref()
