@@ -46,16 +46,38 @@ pub(crate) fn on_deep_stack(name: &str, program: impl FnOnce() -> ExitCode + Sen
 }
 
 /// Starts the threads that share the work; the one that calls is one of them: a step that runs alone costs no change of
-/// threads. Where address space is limited (`ulimit -v`, batch systems) there are no more than half of it holds, whatever
-/// is wanted: results are the same.
+/// threads.
 pub(crate) fn start_threads(wanted: usize) -> Result<(), Failure> {
-    let limit = getrlimit(Resource::As).current;
-    let room = limit.map_or(usize::MAX, |space| (space / 2 / SPACE) as usize);
-    let useful = std::thread::available_parallelism().map_or(MOST, |n| n.get().max(MOST));
+    let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     rayon::ThreadPoolBuilder::new()
         .stack_size(STACK)
-        .num_threads(wanted.min(useful).min(room).max(1))
+        .num_threads(sensible(wanted, processors, getrlimit(Resource::As).current))
         .use_current_thread()
         .build_global()
         .map_err(|e| Failure::system("cannot start threads", &std::io::Error::other(e)))
+}
+
+/// How many threads to start of those wanted. Where address space is limited (`ulimit -v`, batch systems) there are no more
+/// than half of it holds: results are the same.
+fn sensible(wanted: usize, processors: usize, space: Option<u64>) -> usize {
+    let room = space.map_or(usize::MAX, |space| usize::try_from(space / 2 / SPACE).unwrap_or(usize::MAX));
+    wanted.min(processors.max(MOST)).min(room).max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_beyond_all_use_or_room_are_not_started() {
+        for (wanted, processors, threads) in
+            [(1, 2, 1), (16, 2, 16), (512, 2, 512), (1_000_000_000, 2, 512), (600, 1000, 600), (usize::MAX, 1000, 1000)]
+        {
+            assert_eq!(sensible(wanted, processors, None), threads, "{wanted} {processors}");
+            assert_eq!(sensible(wanted, processors, Some(u64::MAX)), threads, "{wanted} {processors}");
+        }
+        for (threads_of_space, threads) in [(0, 1), (1, 1), (2, 1), (3, 1), (4, 2), (9, 4), (64, 16)] {
+            assert_eq!(sensible(16, 2, Some(threads_of_space * SPACE)), threads, "{threads_of_space}");
+        }
+    }
 }

@@ -11,6 +11,8 @@ fn bench() -> TempDir {
     let folder = tempfile::tempdir().expect("a scratch folder can be made");
     let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).expect("it can be written");
     write("empty", b"");
+    std::fs::create_dir(folder.path().join("folder")).expect("a folder can be made");
+    write("placed.rad", b"void instance x 1 folder 0 0\n");
     write("s.rad", SCENE.as_bytes());
     write("apart.rad", format!("# one lamp\n\n{SCENE}").as_bytes());
     write("marked.rad", format!("\u{feff}{SCENE}").as_bytes());
@@ -41,6 +43,9 @@ fn files_of_another_kind_are_named() {
     let (oconv, rtrace) = (env!("CARGO_BIN_EXE_oconv"), env!("CARGO_BIN_EXE_rtrace"));
     for (program, line, text) in [
         (rtrace, "empty", "rtrace: fatal - (empty): not an octree (nothing in it)\n"),
+        (rtrace, "folder", "rtrace: fatal - (folder): not an octree (a directory)\n"),
+        (oconv, "-i folder", "oconv: fatal - (folder): not an octree (a directory)\n"),
+        (oconv, "placed.rad", "oconv: fatal - (./folder): not an octree (a directory)\n"),
         (rtrace, "s.rad", "rtrace: fatal - (s.rad): not an octree (no header; oconv makes octrees of scene files)\n"),
         (
             rtrace,
@@ -64,14 +69,18 @@ fn files_of_another_kind_are_named() {
             oconv,
             "marked.rad",
             "oconv: fatal - (marked.rad): undefined modifier \"\u{feff}void\" (begins with a byte order mark: save the \
-             file without one)\noconv: at marked.rad:1:1\n",
+             file as UTF-8 without one)\noconv: at marked.rad:1:1\n",
         ),
     ] {
         let output = run(&folder, program, line, "");
         assert_eq!((output.status.code(), told(&output)), (Some(1), text.to_owned()), "{line}");
     }
     let output = run(&folder, oconv, "wide.rad", "");
-    assert!(told(&output).contains(" (UTF-16: save the file as plain text)\n"), "{}", told(&output));
+    assert!(
+        told(&output).contains(" (UTF-16: save the file as UTF-8 without a byte order mark)\n"),
+        "{}",
+        told(&output)
+    );
 }
 
 #[test]
@@ -99,6 +108,13 @@ fn mistaken_options_are_explained_on_a_second_line() {
             ("s.oct -ab 1", "s.oct", "'s.oct' is taken for the octree, and options come before it"),
             ("s.oct s.oct", "s.oct", "'s.oct' is taken for the octree, and nothing may follow it"),
             ("-nosuch s.oct", "-nosuch", "there is no such option; --help lists them"),
+            ("-dvx s.oct", "-dvx", "'-dv' does not take 'x'"),
+            ("-w2 s.oct", "-w2", "'-w' does not take '2'"),
+            ("-abx s.oct", "-abx", "'-ab' does not take 'x'"),
+            ("-ab=2 s.oct", "-ab=2", "'-ab' does not take '=2'"),
+            ("--ab=2 s.oct", "--ab=2", "'-ab' does not take '=2'"),
+            ("--error=5% s.oct", "--error=5%", "'--error' does not take '=5%'"),
+            ("-defaults1 s.oct", "-defaults1", "there is no such option; --help lists them"),
             ("--ab 1 s.oct", "--ab", "expected '-ab'"),
             ("-stats s.oct", "-stats", "expected '--stats'"),
             ("-ab two s.oct", "-ab", "'two' (expected an integer)"),
@@ -112,6 +128,8 @@ fn mistaken_options_are_explained_on_a_second_line() {
             assert!(output.status.code() == Some(1) && told(&output).starts_with(&text), "{}", told(&output));
         }
     }
+    let text = told(&run(&folder, env!("CARGO_BIN_EXE_rpict"), "-vtxy s.oct", ""));
+    assert!(text.contains("\nrpict: '-vt' does not take 'xy'\n"), "{text}");
     for (program, name) in [(env!("CARGO_BIN_EXE_oconv"), "oconv"), (env!("CARGO_BIN_EXE_obj2mesh"), "obj2mesh")] {
         let output = run(&folder, program, "-help", "");
         let text = format!("{name}: fatal - unknown option: '-help'\n{name}: --help lists the options\n");
@@ -132,14 +150,19 @@ fn places_in_expressions_are_marked_below_them() {
     }
 }
 
+/// What is said of rays that seem to be binary.
+const BINARY: &str =
+    "rtrace: warning - rays end at \"\\u{1}\\u{2}\\u{3}\" (expected a number; binary rays need -ff or -fd)\n";
+
 #[test]
-fn text_that_stops_to_be_rays_is_a_warning() {
+fn text_that_stops_being_rays_is_a_warning() {
     let folder = bench();
     let ray = "0 0 0 0 1 0\n";
     for (input, text, records) in [
         (ray.to_owned(), "", 1),
         (format!("{ray}0 0 0"), "rtrace: warning - last ray has 3 numbers of 6, and is left out\n", 1),
         ("0,0,0,0,1,0\n".to_owned(), "rtrace: warning - rays end at \"0,0,0,0,1,0\" (expected a number)\n", 0),
+        ("\u{1}\u{2}\0\u{3}".to_owned(), BINARY, 0),
         (format!("# rays\n{ray}"), "rtrace: warning - rays end at \"#\" (expected a number)\n", 0),
     ] {
         let output = run(&folder, env!("CARGO_BIN_EXE_rtrace"), "-h s.oct", &input);

@@ -71,9 +71,13 @@ fn the_frame_after_the_last_one_is_none() {
 #[test]
 fn pictures_without_a_view_are_those_of_the_options() {
     let bench = Bench::new();
-    let view = "-vh 60 -vv 60 -x 40";
-    assert_eq!(bench.rpict(&format!("-w {view} -y 40 -o whole.hdr scene.oct")).0, Some(0));
+    // Every pixel is sent a ray: those between would depend on where the picture is taken up.
+    let view = "-vh 60 -vv 60 -x 40 -ps 1";
+    // Seen from elsewhere than what will follow: lines that are taken over differ from those that are rendered.
+    assert_eq!(bench.rpict(&format!("-w {view} -vp 1 0 0 -y 40 -o whole.hdr scene.oct")).0, Some(0));
     let whole = bench.read("whole.hdr");
+    assert_eq!(bench.rpict(&format!("-w {view} -y 40 -o other.hdr scene.oct")).0, Some(0));
+    let other = bench.read("other.hdr");
     // Neither the line of the view nor that of the command, which has one, too.
     let head = whole.len() - pixels(&whole).len();
     let lines = whole[..head].split_inclusive(|&b| b == b'\n');
@@ -91,9 +95,11 @@ fn pictures_without_a_view_are_those_of_the_options() {
     let (status, text) = bench.rpict(&format!("{view} -y 40 -r part.hdr -o new.hdr scene.oct"));
     let told = "rpict: warning - cannot recover view parameters from \"part.hdr\"\n";
     assert_eq!((status, text.as_str()), (Some(0), told));
-    // The lines that were there are the same; the last one may have been cut off.
-    let (old, new) = (pixels(&whole), bench.read("new.hdr"));
-    let kept = old.len() / 2 - 200;
-    assert!(kept > 200 && old[..kept] == pixels(&new)[..kept]);
+    // The lines that were there are taken over, though the last one may have been cut off; the others are rendered.
+    let (old, other, new) = (pixels(&whole), pixels(&other), bench.read("new.hdr"));
+    let (new, kept, rendered) = (pixels(&new), old.len() / 2 - 200, other.len() / 4);
+    assert!(kept > 200 && old[..kept] == new[..kept] && other[..kept] != new[..kept]);
+    let last = &new[new.len() - rendered..];
+    assert!(rendered > 200 && other.ends_with(last) && !old.ends_with(last));
     assert_eq!(bench.names("part"), [""; 0]);
 }

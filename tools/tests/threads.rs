@@ -41,16 +41,6 @@ fn what_is_no_number_of_threads_is_refused_where_it_is_asked_for() {
     }
 }
 
-#[test]
-fn threads_beyond_all_use_are_not_started() {
-    let answer = run(PROGRAMS[0], "1", &["-n", "1000000000", "-defaults"]);
-    assert!(answer.status.success());
-    let begun = std::time::Instant::now();
-    let text =
-        String::from_utf8_lossy(&run(PROGRAMS[0], "1", &["-n", "1000000000", "missing.oct"]).stderr).into_owned();
-    assert!(text.contains("missing.oct") && begun.elapsed().as_secs() < 30, "{text}");
-}
-
 /// Batch systems limit the address space, of which a thread's stack takes much, though little memory.
 #[test]
 #[cfg(target_os = "linux")]

@@ -197,10 +197,25 @@ fn expected(option: &str, word: &str, what: &str) -> Failure {
 fn unknown<S>(word: &str, table: &[Row<S>]) -> Failure {
     let name = word.trim_start_matches('-');
     let meant = table.iter().find(|row| row.flag.trim_start_matches('-') == name && row.flag != &word[1..]);
-    Failure::at(word).hint(match meant {
-        Some(row) => format!("expected '-{}'", row.flag),
-        None => "there is no such option; --help lists them".to_owned(),
+    Failure::at(word).hint(if let Some(row) = meant {
+        format!("expected '-{}'", row.flag)
+    } else if let Some((flag, tail)) = glued(name, table) {
+        format!("'-{flag}' does not take '{tail}'")
+    } else {
+        "there is no such option; --help lists them".to_owned()
     })
+}
+
+/// The option that a word without its dashes begins with, the longest one, and what is glued to it without need: one
+/// character, or a value. More letters are rather another word, but for options that want letters.
+fn glued<'a, S>(name: &'a str, table: &[Row<S>]) -> Option<(&'static str, &'a str)> {
+    let parts = table.iter().filter_map(|row| {
+        let tail = name.strip_prefix(row.flag.trim_start_matches('-'))?;
+        let letters = tail.starts_with(|c: char| c.is_alphabetic()) && tail.chars().nth(1).is_some();
+        let is_tail = !tail.is_empty() && (!letters || matches!(row.place, Place::Glued(..)));
+        is_tail.then_some((row.flag, tail))
+    });
+    parts.min_by_key(|(_, tail)| tail.len())
 }
 
 /// Values are printable ASCII and not empty.

@@ -185,9 +185,12 @@ pub enum Problem {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Instead {
-    /// There is not a byte, as where the program failed that should have made it, or it is a directory.
+    /// There is not a byte, as where the program failed that should have made it.
     #[error(" (nothing in it)")]
     Nothing,
+    /// A directory.
+    #[error(" (a directory)")]
+    Directory,
     /// Text without a header, as scene files are.
     #[error(" (no header; oconv makes octrees of scene files)")]
     Text,

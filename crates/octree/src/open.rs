@@ -1,9 +1,11 @@
 //! An octree's bytes by its name on a command line: a file, or a command whose output is the octree.
 
 use crate::Error;
+use crate::error::{Instead, Problem};
 use ambit_base::Notify;
 use ambit_file::{bytes_of, path_of};
 use ambit_scene::Runner;
+use std::io::ErrorKind;
 
 /// What may be an octree.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -17,13 +19,15 @@ pub struct Source {
 }
 
 impl Source {
-    /// The bytes of a file, or of what a command prints if the name begins with `!`. A directory is an empty file.
+    /// The bytes of a file, or of what a command prints if the name begins with `!`.
     pub fn open(name: &str, runner: &mut dyn Runner) -> Result<Self, Error> {
         let failed = |action| move |source| Error::Open { action, name: name.to_owned(), source };
         let shown = name.to_owned();
         let Some(command) = name.strip_prefix('!') else {
             let bytes = match std::fs::read(path_of(name)) {
-                Err(e) if e.kind() == std::io::ErrorKind::IsADirectory => Vec::new(),
+                Err(e) if e.kind() == ErrorKind::IsADirectory => {
+                    return Err(Problem::NotAnOctree(Instead::Directory).of(name));
+                }
                 result => result.map_err(failed("cannot open octree file"))?,
             };
             return Ok(Self { name: shown, bytes, failed: false });

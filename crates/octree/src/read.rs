@@ -10,7 +10,7 @@ use crate::{Cube, Error, frozen};
 use ambit_base::Notify;
 use ambit_file::{Cursor, Header, text_of};
 use ambit_scene::{ObjectId, Reader, Runner, Scene};
-use std::io::BufRead;
+use std::io::{BufRead, ErrorKind};
 
 /// The value of `FORMAT=` in octrees.
 pub(crate) const FORMAT: &str = "Radiance_octree";
@@ -69,8 +69,11 @@ pub fn read_octree(
 
 /// The cube alone: all that is needed of an octree to place an instance of it.
 pub fn read_cube(input: &mut impl BufRead, name: &str) -> Result<Cube, Error> {
-    // A stream that fails has ended, as far as a file format is concerned.
-    let instead = Instead::of(input.fill_buf().unwrap_or_default());
+    let instead = match input.fill_buf() {
+        Ok(bytes) => Instead::of(bytes),
+        Err(e) if e.kind() == ErrorKind::IsADirectory => Instead::Directory,
+        Err(source) => return Err(Error::Open { action: "cannot read octree file", name: name.to_owned(), source }),
+    };
     let header = Header::read(input, name).map_err(|_| Problem::NotAnOctree(instead).of(name))?;
     check_format(&header, name)?;
     OCTREE.front_cube(input).map_err(|p| p.of(name))

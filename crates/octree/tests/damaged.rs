@@ -209,3 +209,25 @@ proptest! {
         }
     }
 }
+
+/// A file that the system refuses to read.
+struct Refused(std::io::ErrorKind);
+
+impl std::io::Read for Refused {
+    fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {
+        Err(self.0.into())
+    }
+}
+
+#[test]
+fn files_that_cannot_be_read_are_not_called_empty() {
+    use std::io::ErrorKind;
+    let read =
+        |kind| ambit_octree::read_cube(&mut std::io::BufReader::new(Refused(kind)), "o").unwrap_err().to_string();
+    assert_eq!(read(ErrorKind::IsADirectory), "(o): not an octree (a directory)");
+    assert!(read(ErrorKind::PermissionDenied).starts_with("cannot read octree file \"o\": "));
+    assert_eq!(
+        ambit_octree::read_cube(&mut &b""[..], "o").unwrap_err().to_string(),
+        "(o): not an octree (nothing in it)"
+    );
+}

@@ -10,8 +10,8 @@ use ambit_base::{DVec3, EPSILON, Rgb};
 
 /// Tag of a hemisphere's point set; the far side's is the next.
 const HEMISPHERE: u64 = 0xa0;
-/// Fewer samples than these do not tell what a texture's tilt does, and count alike, as in Radiance: the quotient that tells
-/// it is off by a tenth for four.
+/// Fewer samples than these do not tell what a texture's tilt does, and count alike, as in Radiance: their own noise is
+/// most of the gradient that they give.
 const LEAST_FOR_TILT: usize = 49;
 
 impl<O: Observer> Walk<'_, O> {

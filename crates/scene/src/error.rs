@@ -136,9 +136,9 @@ pub enum ErrorKind {
 fn mark(word: &str) -> &'static str {
     let bytes = bytes_of(word);
     if bytes.starts_with(b"\xef\xbb\xbf") {
-        " (begins with a byte order mark: save the file without one)"
+        " (begins with a byte order mark: save the file as UTF-8 without one)"
     } else if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        " (UTF-16: save the file as plain text)"
+        " (UTF-16: save the file as UTF-8 without a byte order mark)"
     } else {
         ""
     }

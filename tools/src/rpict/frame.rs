@@ -97,7 +97,8 @@ impl Frame {
     pub(crate) fn take_over(&mut self, recovered: Option<Recovered>) -> Result<(), Failure> {
         if let Some(r) = &recovered {
             if r.view.is_none() && r.size != (self.width, self.height) {
-                return Err(r.mismatch());
+                let stays = r.give_back().err();
+                return Err(r.mismatch(stays));
             }
             (self.width, self.height) = r.size;
             // What the view and the size come to, whatever was asked for then.

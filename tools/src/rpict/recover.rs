@@ -3,7 +3,7 @@
 use crate::session::{Session, Stop};
 use ambit_base::Notify;
 use ambit_cli::Failure;
-use ambit_file::{Orientation, PictureReader, PixelSpace, View, name_of, path_of};
+use ambit_file::{Orientation, PictureReader, PixelSpace, View, name_of, os_text, path_of};
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -23,14 +23,20 @@ pub(crate) struct Recovered {
 }
 
 impl Recovered {
-    /// The error of one that is not as large as it must be. Its file has its name back, for another try.
-    pub(crate) fn mismatch(&self) -> Failure {
+    /// Gives the file its name back, for another try; what to say if it stays where it was set aside.
+    pub(crate) fn give_back(&self) -> Result<(), String> {
         let path = path_of(&self.called);
-        if let Some(file) = self.file.as_ref().filter(|&file| *file != path) {
-            // Without it the file stays where warnings have told.
-            _ = fs::rename(file, path);
+        match self.file.as_ref().filter(|&file| *file != path) {
+            Some(file) => fs::rename(file, path)
+                .map_err(|e| format!("the recover file is now \"{}\" ({})", name_of(file), os_text(&e))),
+            None => Ok(()),
         }
-        Failure::user(format!("resolution mismatch in recover file \"{}\"", self.called))
+    }
+
+    /// The error of one that is not as large as it must be, and where its file stays if not at its name.
+    pub(crate) fn mismatch(&self, stays: Option<String>) -> Failure {
+        let failure = Failure::user(format!("resolution mismatch in recover file \"{}\"", self.called));
+        Failure { hint: stays, ..failure }
     }
 }
 
@@ -104,4 +110,25 @@ pub(crate) fn read(session: &Session, called: &str, file: PathBuf, space: PixelS
         lines.push(line.to_vec());
     }
     Some(Recovered { called, file: Some(file), view, size, lines })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_does_not_get_its_name_back_is_named() {
+        let folder = tempfile::tempdir().expect("a scratch folder can be made");
+        let [spare, named] = ["rfabcdef", "p.hdr"].map(|name| folder.path().join(name));
+        let called = name_of(&named).into_owned();
+        let recovered = Recovered { called, file: Some(spare.clone()), view: None, size: (1, 1), lines: Vec::new() };
+        let stays = recovered.give_back().expect_err("there is no such file");
+        assert_eq!(stays, format!("the recover file is now \"{}\" (No such file or directory)", spare.display()));
+        assert_eq!(recovered.mismatch(Some(stays.clone())).hint, Some(stays));
+
+        fs::write(&spare, "lines").expect("it can be written");
+        assert_eq!(recovered.give_back(), Ok(()));
+        assert!(named.exists() && !spare.exists());
+        assert_eq!(recovered.mismatch(None).hint, None);
+    }
 }

@@ -13,6 +13,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Longest word of text input; what follows counts as a word of its own.
 const LONGEST_WORD: usize = 31;
 
+/// Characters of a word that messages show, escaped.
+const LONGEST_SHOWN: usize = 40;
+
 /// How often it is looked whether a signal has ended the wait for input.
 const GLANCE: Timespec = Timespec { tv_sec: 0, tv_nsec: 20_000_000 };
 
@@ -91,7 +94,7 @@ impl<R: Awaited> RayReader<R> {
         !whole && self.input.get_ref().waits()
     }
 
-    /// Origin and direction of the next ray. `None` at the end of the input, or where it stops to be numbers; an
+    /// Origin and direction of the next ray. `None` at the end of the input, or where it stops being numbers; an
     /// incomplete last ray is dropped.
     pub(crate) fn next(&mut self) -> Option<(DVec3, DVec3)> {
         let mut v = [0.0; 6];
@@ -114,7 +117,7 @@ impl<R: Awaited> RayReader<R> {
         Some((DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz)))
     }
 
-    /// What is odd about where text ends to be rays, if anything is. Radiance says nothing: lists with commas, or with a
+    /// What is odd about where text stops being rays, if anything is. Radiance says nothing: lists with commas, or with a
     /// line of titles, come to nothing there.
     pub(crate) fn odd(&self) -> Option<&str> {
         self.odd.as_deref()
@@ -128,7 +131,7 @@ impl<R: Awaited> RayReader<R> {
         };
         let number = boundless_real(&word);
         if number.is_none() {
-            self.odd = Some(format!("rays end at \"{word}\" (expected a number)"));
+            self.odd = Some(format!("rays end at \"{}\" (expected a number{})", shown(&word), binary(&word)));
         }
         number
     }
@@ -179,6 +182,25 @@ impl<R: Awaited> RayReader<R> {
     }
 }
 
+/// A word for a message: on one line, not too long, and harmless to terminals.
+fn shown(word: &str) -> String {
+    let mut text: String = word.escape_default().take(LONGEST_SHOWN).collect();
+    if word.escape_default().nth(LONGEST_SHOWN).is_some() {
+        text.push('…');
+    }
+    text
+}
+
+/// What may help where a word is none, the mark of UTF-8 apart.
+fn binary(word: &str) -> &'static str {
+    let text = word.strip_prefix("\u{ef}\u{bb}\u{bf}").unwrap_or(word);
+    if text.chars().all(|c| c.is_ascii_graphic() || c.is_ascii_whitespace()) {
+        ""
+    } else {
+        "; binary rays need -ff or -fd"
+    }
+}
+
 fn is_space(byte: u8) -> bool {
     byte.is_ascii_whitespace() || byte == 0x0b
 }
@@ -222,6 +244,10 @@ mod tests {
         assert_eq!(odd(""), None);
         assert_eq!(odd("x,y,z,dx,dy,dz\n1 2 3 4 5 6\n"), word("x,y,z,dx,dy,dz"));
         assert_eq!(odd("1 2 3 4 5 6 7 8 9 nan 1 1"), word("nan"));
+        assert_eq!(odd("\u{feff}0 0 0 0 1 0"), word("\\u{ef}\\u{bb}\\u{bf}0"));
+        let escaped = format!("{}\\u{{1…", "\\u{1b}".repeat(6));
+        let binary = format!("rays end at \"{escaped}\" (expected a number; binary rays need -ff or -fd)");
+        assert_eq!(odd(&"\u{1b}".repeat(9)), Some(binary));
         assert_eq!(odd("1 2 3 4 5 6\n1 2 3\n"), Some("last ray has 3 numbers of 6, and is left out".to_owned()));
     }
 

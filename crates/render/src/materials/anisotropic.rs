@@ -89,9 +89,8 @@ impl<O: Observer> Walk<'_, O> {
                 0.0
             },
         };
-        let threshold = self.tracer.options.specular.threshold;
-        let lump_reflected = threshold >= reflected - EPSILON;
-        let lump_through = threshold >= through_specular - EPSILON;
+        let lump_reflected = self.is_lumped(reflected);
+        let lump_through = self.is_lumped(through_specular);
         if reflected > EPSILON && !lump_reflected {
             self.sample_reflection(ray, &facing, lobes.mirror, &facets);
         }
@@ -99,15 +98,10 @@ impl<O: Observer> Walk<'_, O> {
             let k = colour * through_specular as f32;
             self.sample_transmission(ray, &facing, lobes.direction, k, &facets);
         }
-        // As in Radiance, highlights below -st count only beside diffuse light.
-        if diffuse > EPSILON {
-            let lump = if lump_reflected { lobes.mirror } else { Rgb::ZERO };
-            self.ambient(ray, colour * diffuse as f32 + lump, facing.normal);
-        }
-        if through_diffuse > EPSILON {
-            let far = if lump_through { through } else { through_diffuse };
-            self.ambient(ray, colour * far as f32, -facing.normal);
-        }
+        let lump = lump_reflected.then_some(lobes.mirror);
+        self.ambient_with_lump(ray, diffuse, colour * diffuse as f32, lump, facing.normal);
+        let lump = lump_through.then(|| colour * through_specular as f32);
+        self.ambient_with_lump(ray, through_diffuse, colour * through_diffuse as f32, lump, -facing.normal);
         let d = ray.direction;
         self.direct(ray, |l, omega| lobes.coefficient(d, l, omega));
         true

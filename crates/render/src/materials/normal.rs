@@ -135,9 +135,8 @@ impl<O: Observer> Walk<'_, O> {
         if split.smooth && split.diffuse <= EPSILON && split.through_diffuse <= EPSILON {
             return true;
         }
-        let threshold = self.tracer.options.specular.threshold;
-        let lump_reflected = !split.smooth && threshold >= split.reflected - EPSILON;
-        let lump_through = !split.smooth && threshold >= split.through_specular - EPSILON;
+        let lump_reflected = !split.smooth && self.is_lumped(split.reflected);
+        let lump_through = !split.smooth && self.is_lumped(split.through_specular);
         if !split.smooth {
             if split.reflected > EPSILON && !lump_reflected {
                 self.sample_reflection(ray, &facing, split.mirror, &Facets::isotropic(facing.normal, m.roughness));
@@ -147,15 +146,12 @@ impl<O: Observer> Walk<'_, O> {
                 self.sample_transmission(ray, &facing, through, k, &Facets::isotropic(through, m.roughness));
             }
         }
-        // As in Radiance, highlights below -st count only beside diffuse light.
-        if split.diffuse > EPSILON {
-            let lump = if lump_reflected { split.mirror } else { Rgb::ZERO };
-            self.ambient(ray, colour * split.diffuse as f32 + lump, facing.normal);
-        }
-        if split.through_diffuse > EPSILON {
-            let far = if lump_through { split.through } else { split.through_diffuse };
-            self.ambient(ray, colour * far as f32, -facing.normal);
-        }
+        let diffuse = colour * split.diffuse as f32;
+        let lump = lump_reflected.then_some(split.mirror);
+        self.ambient_with_lump(ray, split.diffuse, diffuse, lump, facing.normal);
+        let diffuse = colour * split.through_diffuse as f32;
+        let lump = lump_through.then(|| colour * split.through_specular as f32);
+        self.ambient_with_lump(ray, split.through_diffuse, diffuse, lump, -facing.normal);
         let flat = !split.smooth && !facing.textured && self.is_flat(ray);
         let jitter = self.tracer.options.direct.jitter;
         let alpha2 = m.roughness * m.roughness;

@@ -123,6 +123,26 @@ impl<O: Observer> Walk<'_, O> {
         (2.0 * PI * x1, x2)
     }
 
+    /// True if `-st` leaves a highlight of this strength to interreflection.
+    pub(crate) fn is_lumped(&self, strength: f64) -> bool {
+        self.tracer.options.specular.threshold >= strength - EPSILON
+    }
+
+    /// Interreflection on the side of a surface that `shading` points to. `share` tells whether it scatters there at all:
+    /// as in Radiance, the `lump` of a highlight below `-st` counts only beside diffuse light.
+    pub(crate) fn ambient_with_lump(
+        &mut self,
+        ray: &mut Ray<'_>,
+        share: f64,
+        diffuse: Rgb,
+        lump: Option<Rgb>,
+        shading: DVec3,
+    ) {
+        if share > EPSILON {
+            self.ambient(ray, diffuse + lump.unwrap_or(Rgb::ZERO), shading);
+        }
+    }
+
     pub(crate) fn sample_reflection(&mut self, ray: &mut Ray<'_>, facing: &Facing, k: Rgb, facets: &Facets) {
         let wanted = self.lobe_rays(ray, k);
         let d = ray.direction;

@@ -135,16 +135,15 @@ impl<O: Observer> Walk<'_, O> {
             let straight = colour.brightness() > (near + far).brightness();
             self.pass(ray, self.wgmd_through(ray, facing), *colour, straight);
         }
-        let threshold = self.tracer.options.specular.threshold;
-        let (mut lumped_near, mut lumped_far) = (Rgb::ZERO, Rgb::ZERO);
+        let (mut lumped_near, mut lumped_far) = (None, None);
         match &reflection {
             Some(Lobe { colour, facing, facets: None }) => {
                 let straight = !facing.textured && ray.is_ambient();
                 self.reflect(ray, mirror_direction(ray.direction, facing), *colour, straight);
             }
             Some(Lobe { colour, facing, facets: Some(facets) }) => {
-                if threshold >= f64::from(colour.brightness()) - EPSILON {
-                    lumped_near = *colour;
+                if self.is_lumped(f64::from(colour.brightness())) {
+                    lumped_near = Some(*colour);
                 } else {
                     self.sample_reflection(ray, facing, *colour, facets);
                 }
@@ -152,20 +151,15 @@ impl<O: Observer> Walk<'_, O> {
             None => {}
         }
         if let Some(Lobe { colour, facing, facets: Some(facets) }) = &transmission {
-            if threshold >= f64::from(colour.brightness()) - EPSILON {
-                lumped_far = *colour;
+            if self.is_lumped(f64::from(colour.brightness())) {
+                lumped_far = Some(*colour);
             } else {
                 let direction = self.wgmd_through(ray, facing);
                 self.sample_transmission(ray, facing, direction, *colour, facets);
             }
         }
-        // As in Radiance, highlights below -st count only beside diffuse light.
-        if near.max_element() > EPSILON as f32 {
-            self.ambient(ray, near + lumped_near, facing.normal);
-        }
-        if far.max_element() > EPSILON as f32 {
-            self.ambient(ray, far + lumped_far, -far_normal);
-        }
+        self.ambient_with_lump(ray, near.max_element().into(), near, lumped_near, facing.normal);
+        self.ambient_with_lump(ray, far.max_element().into(), far, lumped_far, -far_normal);
 
         let rough = |lobe: Option<Lobe>| lobe.and_then(|l| Some((l.facets?, l.facing, l.colour)));
         let (reflection, transmission) = (rough(reflection), rough(transmission));

@@ -321,7 +321,12 @@ mod tests {
         // 5 columns wide of 1000, and as high as 5 of them.
         let outline = sun(DVec3::Y);
         assert_eq!(drawn_into(&outline, 0.0, (1000, 50)).1, 0);
-        assert!(drawn_into(&outline, 0.0, (50, 1000)).1 > 4);
+        // The other way round it is a quarter of a column wide, and across two of them.
+        let width = 0.006 / (2.0 * 30f64.to_radians().tan());
+        let area = width * 50.0 * width * 1000.0;
+        let (sum, rays) = drawn_into(&outline, 0.0, (50, 1000));
+        assert!((sum - 1000.0 * area).abs() < 1e-3 * 1000.0 * area, "{sum} {area}");
+        assert_eq!(rays, 12);
     }
 
     #[test]
