@@ -90,7 +90,22 @@ fn pictures_without_a_view_are_those_of_the_options() {
     let (status, text) = bench.rpict(&format!("{view} -y 30 -ro part.hdr scene.oct"));
     assert_eq!(status, Some(1));
     assert!(text.contains("rpict: fatal - resolution mismatch in recover file \"part.hdr\"\n"), "{text}");
-    assert_eq!((bench.read("part.hdr"), bench.names("rf")), (part, vec![]));
+    assert_eq!((&bench.read("part.hdr"), bench.names("rf")), (&part, vec![]));
+
+    // So is one whose lines could not be taken over, being mirrored since, and one that there is no view for.
+    let mut mirrored = part.clone();
+    mirrored[part.windows(4).position(|w| w == b"\n-Y ").expect("the size") + 1] = b'+';
+    for (bytes, options, reason) in [
+        (&mirrored, format!("{view} -y 30"), "resolution mismatch in recover file \"part.hdr\""),
+        (&part, "-vh 0".to_owned(), "illegal horizontal view size"),
+    ] {
+        bench.write("part.hdr", bytes);
+        let (status, text) = bench.rpict(&format!("{options} -ro part.hdr scene.oct"));
+        assert_eq!(status, Some(1), "{options}");
+        assert!(text.contains(reason), "{options}: {text}");
+        assert_eq!((&bench.read("part.hdr"), bench.names("rf")), (bytes, vec![]), "{options}");
+    }
+    bench.write("part.hdr", &part);
 
     let (status, text) = bench.rpict(&format!("{view} -y 40 -r part.hdr -o new.hdr scene.oct"));
     let told = "rpict: warning - cannot recover view parameters from \"part.hdr\"\n";

@@ -11,7 +11,7 @@ use crate::light::{Light, Scene};
 use crate::session::{Session, Stop};
 use ambit_base::{Notify, Rgb};
 use ambit_cli::{Failure, PictureOptions};
-use ambit_file::{PixelSpace, Projection, View, fit_resolution, name_of};
+use ambit_file::{PixelSpace, Projection, View, fit_resolution};
 use ambit_render::Answer;
 use ambit_render::picture::{Band, Camera, Lens, Order, Pixel, Sampler, SmallSources};
 
@@ -84,7 +84,11 @@ impl Frame {
             recovered = recover::read(picture.session, file, path, picture.space);
         }
         let view = recovered.as_ref().and_then(|r| r.view.as_ref()).unwrap_or(&options.view);
-        let mut frame = Self::new(set_up(view)?, options);
+        let projection = set_up(view).map_err(|failure| match recovered.as_ref().map(Recovered::give_back) {
+            Some(Err(stays)) => failure.hint(stays),
+            _ => failure,
+        })?;
+        let mut frame = Self::new(projection, options);
         // The names of a sequence's pictures, without one: its number is 0.
         let named = |pattern: &Option<String>| pattern.as_ref().map(|p| numbered(p, 0));
         (frame.output, frame.distances) = (named(&options.output), named(&options.distances));
@@ -130,10 +134,7 @@ impl Picture<'_> {
         output.head(&head)?;
         if let Some(r) = &frame.recovered {
             output.codes(&r.lines)?;
-            if let Some(file) = &r.file {
-                std::fs::remove_file(file)
-                    .map_err(|e| Failure::system(format!("cannot remove \"{}\"", name_of(file)), &e))?;
-            }
+            r.remove()?;
         }
         if empty {
             self.session.messages.warn("empty output picture");

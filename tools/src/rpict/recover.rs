@@ -12,8 +12,10 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Recovered {
     /// What the user calls the file.
     called: String,
-    /// The file, to be removed when its lines have been copied; none if they cannot be.
-    pub(crate) file: Option<PathBuf>,
+    /// The file.
+    file: PathBuf,
+    /// Its lines can be copied, and the file be removed then.
+    usable: bool,
     /// Its view, if its header has one.
     pub(crate) view: Option<View>,
     /// Width and height.
@@ -26,11 +28,20 @@ impl Recovered {
     /// Gives the file its name back, for another try; what to say if it stays where it was set aside.
     pub(crate) fn give_back(&self) -> Result<(), String> {
         let path = path_of(&self.called);
-        match self.file.as_ref().filter(|&file| *file != path) {
-            Some(file) => fs::rename(file, path)
-                .map_err(|e| format!("the recover file is now \"{}\" ({})", name_of(file), os_text(&e))),
-            None => Ok(()),
+        if self.file == path {
+            return Ok(());
         }
+        let stays = |e| format!("the recover file is now \"{}\" ({})", name_of(&self.file), os_text(&e));
+        fs::rename(&self.file, path).map_err(stays)
+    }
+
+    /// Removes the file, whose lines have been copied.
+    pub(crate) fn remove(&self) -> Result<(), Failure> {
+        if !self.usable {
+            return Ok(());
+        }
+        fs::remove_file(&self.file)
+            .map_err(|e| Failure::system(format!("cannot remove \"{}\"", name_of(&self.file)), &e))
     }
 
     /// The error of one that is not as large as it must be, and where its file stays if not at its name.
@@ -103,13 +114,13 @@ pub(crate) fn read(session: &Session, called: &str, file: PathBuf, space: PixelS
     if resolution.orientation != Orientation::TEXT || reader.space != space {
         // Turned or mirrored since it was made, or in other colours: its view and its size serve, its lines do not.
         warn(format!("bad recover file \"{name}\" - not removed"));
-        return Some(Recovered { called, file: None, view, size, lines });
+        return Some(Recovered { called, file, usable: false, view, size, lines });
     }
     // A line that was cut off is no line.
     while let Ok(Some(line)) = reader.next_codes() {
         lines.push(line.to_vec());
     }
-    Some(Recovered { called, file: Some(file), view, size, lines })
+    Some(Recovered { called, file, usable: true, view, size, lines })
 }
 
 #[cfg(test)]
@@ -121,7 +132,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a scratch folder can be made");
         let [spare, named] = ["rfabcdef", "p.hdr"].map(|name| folder.path().join(name));
         let called = name_of(&named).into_owned();
-        let recovered = Recovered { called, file: Some(spare.clone()), view: None, size: (1, 1), lines: Vec::new() };
+        let recovered =
+            Recovered { called, file: spare.clone(), usable: true, view: None, size: (1, 1), lines: Vec::new() };
         let stays = recovered.give_back().expect_err("there is no such file");
         assert_eq!(stays, format!("the recover file is now \"{}\" (No such file or directory)", spare.display()));
         assert_eq!(recovered.mismatch(Some(stays.clone())).hint, Some(stays));
