@@ -44,5 +44,6 @@ fn what_does_not_go_together_is_told_in_the_error_file() {
         let (outside, inside) = told(scratch.path(), program, line);
         assert!(outside.starts_with(message), "{line}: {outside}");
         assert_eq!(inside, "", "{line}");
+        assert!(!scratch.path().join("log").exists(), "{line}: the file is opened afterwards");
     }
 }

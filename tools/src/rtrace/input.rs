@@ -130,7 +130,8 @@ impl<R: Awaited> RayReader<R> {
             return None;
         };
         let number = boundless_real(&word);
-        if number.is_none() {
+        // Text in two bytes a character ends with an empty word.
+        if number.is_none() && !word.is_empty() {
             self.odd = Some(format!("rays end at \"{}\" (expected a number{})", shown(&word), binary(&word)));
         }
         number
