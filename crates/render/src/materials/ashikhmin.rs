@@ -114,7 +114,7 @@ impl<O: Observer> Walk<'_, O> {
         let specular = m.specular + (Rgb::ONE - m.specular) * (1.0 - cosine).powi(5) as f32;
         let lobe = Lobe { diffuse, specular, normal: facing.normal, cosine, axes, powers };
         let strength = f64::from(m.specular.brightness());
-        let lump = self.tracer.options.specular.threshold >= strength - EPSILON;
+        let lump = self.is_lumped(strength);
         if m.specular.max_element() > EPSILON as f32 && !lump {
             self.sample_ashikhmin(ray, &facing, &lobe);
         }

@@ -155,14 +155,16 @@ impl<O: Observer> Walk<'_, O> {
         };
         // Rejected trials count in the mean of several rays, so their number is found before any ray is sent.
         let limit = TRIALS * wanted;
-        let (mut accepted, mut trials) = (0, 0);
+        let (mut accepted, mut trials, mut last) = (0, 0, None);
         while accepted < wanted && trials < limit {
-            accepted += usize::from(facet(self, trials).is_some());
+            last = facet(self, trials);
+            accepted += usize::from(last.is_some());
             trials += 1;
         }
         let mut sum = Rgb::ZERO;
-        for trial in 0..trials {
-            let Some(direction) = facet(self, trial) else { continue };
+        // A single ray goes where the last trial went.
+        for trial in if wanted == 1 { trials - 1 } else { 0 }..trials {
+            let Some(direction) = (if wanted == 1 { last } else { facet(self, trial) }) else { continue };
             let kind = Kinds::SPECULAR_REFLECTED;
             let tag = mix(REFLECTION, trial as u64);
             let Some(mut child) = self.child(ray, kind, direction, k / wanted as f32, tag) else { continue };
