@@ -94,9 +94,19 @@ fn hemispheres_beside_edges_are_children_too() {
     let scene = "void plastic m 0 0 5 .5 .5 .5 0 0\nm polygon f 0 0 12 -1 -1 0 1 -1 0 1 1 0 -1 1 0\n\
                  m polygon w 0 0 12 -1 1 0 1 1 0 1 1 2 -1 1 2\n";
     let octree = octree(&folder, scene);
-    let lines = |ray: &str| rtrace(&octree, "-w- -otv -ab 1 -aa .2 -ad 64 -as 0", ray).lines().count();
-    assert_eq!(lines("0 0 1 0 .5 -1"), 65);
-    assert_eq!(lines("0 0 1 0 1 -1"), 65);
+    // Where the rays of the hemisphere begin, along y and z.
+    let begin = |ray: &str| -> Vec<[f64; 2]> {
+        let answer = rtrace(&octree, "-w- -oto -ab 1 -aa .2 -ad 64 -as 0", ray);
+        let children = answer.lines().filter_map(|line| line.strip_prefix('\t'));
+        let number = |word: Option<&str>| word.and_then(|w| w.parse().ok()).expect("an origin");
+        let place = |mut words: std::str::SplitWhitespace<'_>| [number(words.nth(1)), number(words.next())];
+        children.map(|line| place(line.split_whitespace())).collect()
+    };
+    let (free, edge) = (begin("0 0 1 0 .5 -1"), begin("0 0 1 0 1 -1"));
+    assert_eq!((free.len(), edge.len()), (64, 64));
+    assert!(free.iter().all(|&place| place == [0.5, 0.0]), "{free:?}");
+    // It is the wall that is met, 16 ε above the floor (`corner.rs`).
+    assert!(edge.iter().all(|&[y, z]| y == 1.0 && (z - 1.6e-5).abs() < 1e-9), "{edge:?}");
 }
 
 #[test]

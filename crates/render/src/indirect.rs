@@ -47,8 +47,7 @@ impl<O: Observer> Walk<'_, O> {
             origin: Origin::of(ray, transmitted, coefficient.max_element().min(1.0)),
         };
         if O::ACTIVE {
-            let origin = query.origin.moved(self.off_edges(ray, normal));
-            self.follow_hemisphere(ray, &Query { origin, ..query }, coefficient);
+            self.follow_hemisphere(ray, &query, coefficient);
         }
         match self.cache.ask(self.tracer, &query) {
             Answer::Fallback(_) if self.is_endless() => self.survive(ray, coefficient, query),

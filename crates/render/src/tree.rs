@@ -235,6 +235,7 @@ impl<O: Observer> Walk<'_, O> {
     /// is in the answer already.
     pub(crate) fn follow_hemisphere(&mut self, ray: &Ray<'_>, query: &Query<Origin>, coefficient: Rgb) {
         let Some(rays) = self.observer.take_hemisphere(query) else { return };
+        let query = &Query { origin: query.origin.moved(self.off_edges(ray, query.normal)), ..*query };
         let share = coefficient / rays.len() as f32;
         for sample in rays {
             let mut child = self.tracer.hemisphere_ray(query, &sample);
