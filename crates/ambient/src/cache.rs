@@ -1,7 +1,7 @@
 //! The cache: options, records, and questions to them.
 
 use crate::average::Average;
-use crate::clamping::Reins;
+use crate::clamping::{Reins, Survey};
 use crate::components::Components;
 use crate::file::Habits;
 use crate::light::Light;
@@ -123,7 +123,7 @@ impl Cache {
         let mut dropped = 0;
         for record in records {
             let level = usize::from(record.level);
-            if self.insert(record, true) {
+            if self.insert(record, Survey::NONE, true) {
                 let loaded = &mut self.statistics.loaded;
                 loaded.resize(loaded.len().max(level + 1), 0);
                 loaded[level] += 1;
@@ -134,8 +134,15 @@ impl Cache {
         dropped
     }
 
+    /// Clamps a record's radii to what those of others allow; returns what [`Cache::insert`] needs to know of that.
+    pub(crate) fn survey(&self, record: &mut Record) -> Survey {
+        let Some(reins) = self.reins.as_ref().filter(|reins| reins.hold(record.level)) else { return Survey::NONE };
+        clamp(record, reins.allowed(record.position, unwidened(record), Survey::NONE));
+        reins.survey(record.position, unwidened(record))
+    }
+
     /// Stores a record, computed by this run or `found`; false if it is implausible or there already.
-    pub(crate) fn insert(&mut self, mut record: Record, found: bool) -> bool {
+    pub(crate) fn insert(&mut self, mut record: Record, survey: Survey, found: bool) -> bool {
         if !record.is_plausible() || record.further.len() + 1 != usize::from(self.params.passes.max(1)) {
             return false;
         }
@@ -145,7 +152,7 @@ impl Cache {
         self.changed.clear();
         let level = record.level;
         if let Some(reins) = self.reins.as_ref().filter(|reins| reins.hold(level)) {
-            let radius = reins.allowed(record.position, unwidened(&record));
+            let radius = reins.allowed(record.position, unwidened(&record), survey);
             clamp(&mut record, radius);
         }
         if !self.store.insert(&record, &self.limits, found) {
@@ -157,7 +164,7 @@ impl Cache {
         let id = self.records.len() as u32;
         self.records.push(record);
         if let Some(reins) = self.reins.as_mut().filter(|reins| reins.hold(level)) {
-            reins.insert(id, position, radius, &mut self.changed);
+            reins.insert(id, position, radius, survey, &mut self.changed);
             for &(id, radius) in &self.changed {
                 let record = &mut self.records[id as usize];
                 clamp(record, radius);

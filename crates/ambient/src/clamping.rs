@@ -43,6 +43,24 @@ const ALL: Rule = Rule { level: 0, slope: 1.0 };
 /// In rooms errors stay the same and records grow little; with a slope of 4 some still reach under the panels.
 const DEEPER: Rule = Rule { level: 1, slope: 2.0 };
 
+/// How many records that came in the meantime are asked one by one: about as fast as searching the tree.
+const NEWCOMERS: usize = 128;
+
+/// What is known of a record before it is entered: what the others allow it and whether it reins any of them in takes most of
+/// the time of entering, and may be asked by any thread while nothing changes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Survey {
+    /// The records that there were, which the radius has been clamped to.
+    seen: usize,
+    /// True if some of them exceed what it allows.
+    exceeded: bool,
+}
+
+impl Survey {
+    /// Nothing is known.
+    pub(crate) const NONE: Self = Self { seen: 0, exceeded: true };
+}
+
 /// Radii of records before widening, no two of which differ by more than a multiple of the distance between them.
 #[derive(Clone, Debug)]
 pub(crate) struct Reins {
@@ -107,24 +125,64 @@ impl Reins {
         At { node: 0, corner: self.corner, edge: self.edge }
     }
 
-    /// Enters record `id`; returns its radius as clamped. Records that it reins in are pushed on `changed` with their
-    /// new radii.
-    pub(crate) fn insert(&mut self, id: u32, position: DVec3, radius: f64, changed: &mut Vec<(u32, f64)>) -> f64 {
-        // Whatever lies outside counts at the border of the cube, where bounds of distances hold for it, too.
-        let inside = position.clamp(self.corner, self.corner + self.edge);
-        let radius = self.lowest(self.root(), inside, radius);
-        self.rein_in(self.root(), inside, radius, changed);
-        let number = self.radii.len() as u32;
-        self.ids.push(id);
-        self.positions.push(inside);
-        self.radii.push(radius);
-        self.enter(number);
-        radius
+    /// Whatever lies outside counts at the border of the cube, where bounds of distances hold for it, too.
+    fn inside(&self, position: DVec3) -> DVec3 {
+        position.clamp(self.corner, self.corner + self.edge)
     }
 
-    /// What the radius of a record that wants `radius` may be.
-    pub(crate) fn allowed(&self, position: DVec3, radius: f64) -> f64 {
-        self.lowest(self.root(), position.clamp(self.corner, self.corner + self.edge), radius)
+    /// Those that came after a survey, if they are few.
+    fn newcomers(&self, survey: Survey) -> Option<impl Iterator<Item = (DVec3, f64)>> {
+        let new = survey.seen..self.radii.len();
+        (new.len() <= NEWCOMERS)
+            .then(|| self.positions[new.clone()].iter().copied().zip(self.radii[new].iter().copied()))
+    }
+
+    /// What the radius of a record that wants `radius` may be, which suits those that `survey` saw.
+    pub(crate) fn allowed(&self, position: DVec3, radius: f64, survey: Survey) -> f64 {
+        let p = self.inside(position);
+        match self.newcomers(survey) {
+            Some(new) => new.fold(radius, |best, (q, r)| best.min(r + self.rule.slope * q.distance(p))),
+            None => self.lowest(self.root(), p, radius),
+        }
+    }
+
+    /// What is to be known of a record whose radius is what it may be.
+    pub(crate) fn survey(&self, position: DVec3, radius: f64) -> Survey {
+        Survey { seen: self.radii.len(), exceeded: self.exceeded(self.root(), self.inside(position), radius) }
+    }
+
+    /// Enters record `id`, whose radius is what it may be. Records that it reins in are pushed on `changed` with their
+    /// new radii.
+    pub(crate) fn insert(
+        &mut self,
+        id: u32,
+        position: DVec3,
+        radius: f64,
+        survey: Survey,
+        changed: &mut Vec<(u32, f64)>,
+    ) {
+        let p = self.inside(position);
+        let exceeds = |(q, r): (DVec3, f64)| r > radius + self.rule.slope * q.distance(p);
+        if survey.exceeded || self.newcomers(survey).is_none_or(|mut new| new.any(exceeds)) {
+            self.rein_in(self.root(), p, radius, changed);
+        }
+        let number = self.radii.len() as u32;
+        self.ids.push(id);
+        self.positions.push(p);
+        self.radii.push(radius);
+        self.enter(number);
+    }
+
+    /// True if a radius in a cell exceeds `radius` plus s times the distance from `p`.
+    fn exceeded(&self, at: At, p: DVec3, radius: f64) -> bool {
+        let node = &self.nodes[at.node];
+        let slope = self.rule.slope;
+        if node.greatest <= radius + slope * at.distance(p) {
+            return false;
+        }
+        let beyond = |&j: &u32| self.radii[j as usize] > radius + slope * self.positions[j as usize].distance(p);
+        node.members.iter().any(beyond)
+            || node.children != 0 && (0..8).any(|k| self.exceeded(at.child(node.children, k), p, radius))
     }
 
     /// The least of `best` and Rⱼ + s dⱼ over a cell.
@@ -244,7 +302,9 @@ mod tests {
                 let mut seen: Vec<f64> = Vec::new();
                 for (k, &(p, r)) in order.iter().enumerate() {
                     let mut changed = Vec::new();
-                    seen.push(reins.insert(10 + k as u32, p, r, &mut changed));
+                    let allowed = reins.allowed(p, r, Survey::NONE);
+                    reins.insert(10 + k as u32, p, allowed, Survey::NONE, &mut changed);
+                    seen.push(allowed);
                     for &(id, r) in &changed {
                         seen[id as usize - 10] = r;
                     }
@@ -263,8 +323,41 @@ mod tests {
         let mut changed = Vec::new();
         for k in 0..100 {
             let r = 1.0 / f64::from(k + 1);
-            assert_eq!(reins.insert(k, DVec3::splat(0.3), r, &mut changed), r);
+            assert_eq!(reins.allowed(DVec3::splat(0.3), r, Survey::NONE), r);
+            reins.insert(k, DVec3::splat(0.3), r, Survey::NONE, &mut changed);
         }
         assert!(reins.radii.iter().all(|&r| r == 0.01));
+    }
+
+    /// Surveys of a while ago, of fewer and of more newcomers than are asked one by one, lead to the same.
+    #[test]
+    fn surveys_change_nothing() {
+        for round in [1, 7, 64, 2 * NEWCOMERS] {
+            let all = points(900, 1.0);
+            let (mut plain, mut surveyed) = (Reins::by(DEEPER, DVec3::ZERO, 1.0), Reins::by(DEEPER, DVec3::ZERO, 1.0));
+            let mut reined = 0;
+            for (start, chunk) in all.chunks(round).enumerate().map(|(n, chunk)| (n * round, chunk)) {
+                let known: Vec<(f64, Survey)> = chunk
+                    .iter()
+                    .map(|&(p, r)| {
+                        let r = surveyed.allowed(p, r, Survey::NONE);
+                        (r, surveyed.survey(p, r))
+                    })
+                    .collect();
+                for (k, (&(p, r), (allowed, survey))) in chunk.iter().zip(known).enumerate() {
+                    let id = (start + k) as u32;
+                    let (mut one, mut other) = (Vec::new(), Vec::new());
+                    let r = plain.allowed(p, r, Survey::NONE);
+                    plain.insert(id, p, r, Survey::NONE, &mut one);
+                    let r = surveyed.allowed(p, allowed, survey);
+                    surveyed.insert(id, p, r, survey, &mut other);
+                    reined += one.len();
+                }
+            }
+            assert!(reined > 100, "{reined}");
+            for (a, b) in plain.radii.iter().zip(&surveyed.radii) {
+                assert!((a - b).abs() <= 1e-12, "{a} and {b} in rounds of {round}");
+            }
+        }
     }
 }

@@ -3,7 +3,7 @@
 //! Breadth first, level by level, in rounds of misses that cannot cover each other: picks stand at least the largest
 //! reach a·R₊ apart. Their samples are traced in parallel against the frozen cache; what those miss is resolved together
 //! one level down; then the records are made in parallel and published in order. Queries a round's records do not answer
-//! stay for the next; once every query has been considered at a distance, the distance is halved. Where records were reined
+//! stay for the next; once every query has been considered at a distance, the distance is quartered. Where records were reined
 //! in meanwhile and do not reach any more what they answered, that is open once more.
 //!
 //! Nothing depends on time, threads or the order in which they finish: streams are keyed by the bits of position, normal
@@ -21,10 +21,15 @@ use ambit_base::{Rgb, hash_bits, hash_point};
 
 /// Misses of a pass that are resolved together; later windows profit from the records of earlier ones.
 const WINDOW: usize = 4096;
-/// Picks of the first round; later rounds have twice as many up to [`CAP`]. Where the records of one level are few,
-/// those of a round see only the few below them and share their noise: records that come one after the other also see
-/// each other.
+/// Picks of the first round where a level has no records yet; later rounds have twice as many up to [`CAP`]. Where the
+/// records of one level are few, those of a round see only the few below them and share their noise: records that come
+/// one after the other also see each other.
 const FIRST: usize = 2;
+/// Where it has records, the first round may add one for so many.
+const GROWTH: usize = 8;
+/// What the distance that picks keep is multiplied by once every query has been considered at it. With a half there are more
+/// rounds, and no fewer records.
+const CLOSER: f64 = 0.25;
 /// Look-ups below which a parallel step costs more than it saves.
 const FEW: usize = 64;
 
@@ -103,7 +108,7 @@ impl Cache {
         // True once questions are open that were settled before.
         let mut again = false;
         let least = 0.5 * limits.accuracy * limits.min_radius;
-        let mut most = FIRST;
+        let mut most = (self.worth.records(level) / GROWTH).clamp(FIRST, CAP);
         // What the records around each query weigh together, where that matters.
         let enough = self.params.enough(level);
         let mut weights = vec![0.0; queries.len()];
@@ -135,13 +140,13 @@ impl Cache {
             let Selection { picks, maximal, blocked } = select(&limits, queries, &open, &exempt, apart, most);
             most = (2 * most).min(CAP);
             let outcomes = self.hemispheres(sampler, level, queries, &picks, Kept::Yes);
-            let delta = self.publish(sampler, queries, &picks, &outcomes, &mut values);
             let mut wasted = [false; CAP];
             for (k, outcome) in outcomes.iter().enumerate() {
                 picked[picks[k]] = true;
                 wasted[k] = !matches!(outcome, Outcome::Record(..));
                 whole[picks[k]] = wasted[k] || !smooth;
             }
+            let delta = self.publish(sampler, queries, &picks, outcomes, &mut values);
             // Those that waited for a record that could not be stored need not keep away from it again.
             for (query, pick) in blocked {
                 exempt[query] |= wasted[pick];
@@ -158,7 +163,7 @@ impl Cache {
                 .map(|(&q, sum)| self.answer(&sum, level).filter(|_| weights[q] >= enough || sum.is_enough(enough)))
                 .collect();
             if let Some(reuse) = self.reuse.as_mut().filter(|_| !again) {
-                let own = picks.iter().zip(&outcomes).filter(|(_, o)| matches!(o, Outcome::Record(..)));
+                let own = picks.iter().zip(wasted).filter(|(_, wasted)| !wasted);
                 own.for_each(|(&q, _)| reuse.made(&queries[q]));
                 // What is asked in several passes is one question.
                 let others = open.iter().zip(&found).filter(|(q, f)| f.is_some() && queries[**q].pass == 0);
@@ -166,7 +171,7 @@ impl Cache {
             }
             open = settle(&open, &found, &mut values);
             if maximal {
-                apart = (0.5 * apart).max(least);
+                apart = (CLOSER * apart).max(least);
             }
         }
     }
@@ -220,7 +225,7 @@ impl Cache {
         sampler: &S,
         queries: &[Query<S::Origin>],
         picks: &[usize],
-        outcomes: &[Outcome],
+        outcomes: Vec<Outcome>,
         values: &mut [Light],
     ) -> Store {
         let fallback = self.fallback();
@@ -228,10 +233,10 @@ impl Cache {
         let first = self.records().len();
         for (&q, outcome) in picks.iter().zip(outcomes) {
             values[q] = match outcome {
-                Outcome::Record(record, value) => {
+                Outcome::Record(record, value, survey) => {
                     let sum = delta.lookup(&self.limits, sampler, &queries[q]);
                     let covered = sum.answer().is_some() && sum.is_enough(self.params.enough(record.level));
-                    if !covered && self.insert(record.clone(), false) {
+                    if !covered && self.insert(record, survey, false) {
                         // What is new is numbered alike in both trees, but for where it begins.
                         let new = &self.records()[first..];
                         for &(id, _) in self.changed.iter().filter(|(id, _)| *id as usize >= first) {
@@ -241,11 +246,11 @@ impl Cache {
                         let both = delta.insert(new.last().expect("it was just stored"), &self.limits, false);
                         debug_assert!(both, "what the store takes its part takes");
                     }
-                    *value
+                    value
                 }
                 Outcome::Once(value) => {
                     self.statistics.unstored += 1;
-                    *value
+                    value
                 }
                 Outcome::Nothing => fallback.into(),
             };

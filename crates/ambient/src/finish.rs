@@ -1,5 +1,6 @@
 //! From the samples of a hemisphere to a record: mean, gradients, radii, corral.
 
+use crate::clamping::Survey;
 use crate::classical;
 use crate::components::Components;
 use crate::corral::{border, corral};
@@ -45,8 +46,8 @@ pub(crate) struct Cell {
 /// What a hemisphere came to.
 #[derive(Clone, Debug)]
 pub(crate) enum Outcome {
-    /// A record, and its answer to the query that asked.
-    Record(Record, Light),
+    /// A record, its answer to the query that asked, and what is known of those whose radii bound each other's.
+    Record(Record, Light, Survey),
     /// Some samples were refused: an answer to use once.
     Once(Light),
     /// All samples were refused.
@@ -57,7 +58,7 @@ impl Outcome {
     /// What it answers to the query that asked; none if all samples were refused.
     pub(crate) fn value(self) -> Option<Light> {
         match self {
-            Self::Record(_, value) | Self::Once(value) => Some(value),
+            Self::Record(_, value, _) | Self::Once(value) => Some(value),
             Self::Nothing => None,
         }
     }
@@ -65,10 +66,10 @@ impl Outcome {
     /// The record as an ambient file returns it, and its answer.
     pub(crate) fn quantised<O>(self, query: &Query<O>, components: &Components) -> Self {
         match self {
-            Self::Record(record, _) => {
+            Self::Record(record, _, survey) => {
                 let record = record.quantised(components);
                 let answer = answer(&record, query);
-                Self::Record(record, answer)
+                Self::Record(record, answer, survey)
             }
             other => other,
         }
@@ -139,7 +140,7 @@ pub(crate) fn finish<O>(
     };
     if record.is_plausible() {
         let answer = answer(&record, query);
-        Outcome::Record(record, answer)
+        Outcome::Record(record, answer, Survey::NONE)
     } else {
         once()
     }

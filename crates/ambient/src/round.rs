@@ -230,9 +230,16 @@ impl<S: Sampler> Round<'_, S> {
         let lights = (0..passes).map(|pass| mean(cells.iter().skip(pass).step_by(passes)));
         let lights: Vec<Light> = lights.map(|light| self.cache.ending(query.level, light)).collect();
         let outcome = finish(&self.cache.limits, query, plan, &together(cells, plan.len()), &lights);
-        match &self.cache.quantised {
+        let outcome = match &self.cache.quantised {
             Some(components) => outcome.quantised(query, components),
             None => outcome,
+        };
+        match outcome {
+            Outcome::Record(mut record, value, _) => {
+                let survey = self.cache.survey(&mut record);
+                Outcome::Record(record, value, survey)
+            }
+            other => other,
         }
     }
 

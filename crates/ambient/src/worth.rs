@@ -35,6 +35,11 @@ impl Worth {
         self.open = queries;
     }
 
+    /// Records of a level.
+    pub(crate) fn records(&self, level: u8) -> usize {
+        self.records.get(usize::from(level)).copied().unwrap_or(0) as usize
+    }
+
     /// There is one record more.
     pub(crate) fn made(&mut self, level: u8) {
         let level = usize::from(level);
@@ -52,8 +57,8 @@ impl Worth {
         if level == 0 {
             return square;
         }
-        let of = |level: u8| self.records.get(usize::from(level)).copied().unwrap_or(0) as f32;
-        let (seen, records) = ((of(0) + self.open as f32).max(1.0), of(level).max(1.0));
+        let seen = (self.records(0) + self.open).max(1) as f32;
+        let records = self.records(level).max(1) as f32;
         (SCALE * weight * (seen.sqrt() / records).powf(POWER)).clamp(LEAST * square, square)
     }
 }

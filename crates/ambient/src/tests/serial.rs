@@ -51,8 +51,8 @@ pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &m
     }
     let light = cache.ending(query.level, mean(cells.iter()));
     match finish(&cache.limits, query, &plan, &cells, &[light]) {
-        Outcome::Record(record, value) => {
-            cache.insert(record, false);
+        Outcome::Record(record, value, survey) => {
+            cache.insert(record, survey, false);
             value
         }
         Outcome::Once(value) => value,
