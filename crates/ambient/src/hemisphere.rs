@@ -10,6 +10,7 @@
 use crate::grid::Grid;
 use crate::params::{ASSUMED_REFLECTANCE, Params, Spacing};
 use crate::sampler::SampleRay;
+use crate::supersample::budget;
 use ambit_base::{DVec3, EPSILON, Frame, Stream};
 use std::f64::consts::TAU;
 
@@ -44,6 +45,8 @@ pub struct Hemisphere {
     start: [f64; 2],
     /// Sample directions in the frame, one a cell, if they are kept.
     locals: Vec<DVec3>,
+    /// How many extra samples there are to be.
+    extra: usize,
 }
 
 impl Hemisphere {
@@ -78,7 +81,8 @@ impl Hemisphere {
         let grid = if classical { Grid::polar(divisions * weight) } else { Grid::Disk { side } };
         let child_weight = if caching { ASSUMED_REFLECTANCE as f32 } else { coefficient / (side * side) as f32 };
         let plan = Self::in_cells(grid, child_weight, normal, stream);
-        Some(if caching { plan.keep_directions() } else { plan })
+        let extra = budget(params.super_samples, weight as f32, grid.side());
+        Some(if caching { Self { extra, ..plan.keep_directions() } } else { plan })
     }
 
     /// Plans a hemisphere of at most `-ad` × `weight` samples, one at least, whose value is not kept. Its rays weigh what
@@ -93,7 +97,7 @@ impl Hemisphere {
 
     fn in_cells(grid: Grid, child_weight: f32, normal: DVec3, stream: Stream) -> Self {
         let frame = Frame::turned(normal, TAU * stream.child(tag::TURN).one());
-        Self { frame, grid, stream, child_weight, start: stream.child(tag::CELL).two(), locals: Vec::new() }
+        Self { frame, grid, stream, child_weight, start: stream.child(tag::CELL).two(), locals: Vec::new(), extra: 0 }
     }
 
     /// Keeps the sample directions at hand, where each is asked for several times.
@@ -112,6 +116,11 @@ impl Hemisphere {
     /// How it is divided.
     pub(crate) fn grid(&self) -> Grid {
         self.grid
+    }
+
+    /// How many extra samples there are to be where values are kept, beside one a cell.
+    pub(crate) fn extra(&self) -> usize {
+        self.extra
     }
 
     /// The number of cells, each of projected solid angle π/len.

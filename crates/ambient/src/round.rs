@@ -13,7 +13,7 @@ use crate::light::Light;
 use crate::reuse::RENT;
 use crate::sampler::{Query, Sample, Sampler};
 use crate::steps::Chain;
-use crate::supersample::{allocate, budget};
+use crate::supersample::allocate;
 use ambit_base::{Colour, Stream, Vec3};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -64,7 +64,7 @@ impl Cache {
     ) -> Vec<Outcome> {
         let (samples, repaired) = (AtomicU64::new(0), AtomicU64::new(0));
         let first = Round { cache: &*self, sampler, kept, samples: &samples, repaired: &repaired };
-        let mut states = self.steps.chains(chosen.len(), |k, chain| first.begin(&queries[chosen[k]], chain));
+        let mut states = self.steps.chains(chosen.len(), |k, chain| first.begin(&queries[chosen[k]], k, chain));
         loop {
             let mut waiting: Vec<usize> = Vec::new();
             let mut misses = Vec::new();
@@ -115,13 +115,16 @@ impl Cache {
 }
 
 impl<S: Sampler> Round<'_, S> {
-    /// Plans a hemisphere, takes its samples and goes on as far as it can.
-    fn begin(&self, query: &Query<S::Origin>, chain: &mut Chain) -> State<S::Origin> {
+    /// Plans the so-manieth hemisphere, takes its samples and goes on as far as it can.
+    fn begin(&self, query: &Query<S::Origin>, number: usize, chain: &mut Chain) -> State<S::Origin> {
         let params = &self.cache.params;
         let weight = self.cache.limits.record_weight(query.level, query.weight);
         let stream = Stream::new(0, key(query, params.seed));
         let plan = match self.kept {
-            Kept::Yes => Hemisphere::new(params, self.share(query), 1.0, query.normal, stream, true),
+            Kept::Yes => {
+                let share = self.cache.worth.share(query.level, weight, number);
+                Hemisphere::new(params, share, 1.0, query.normal, stream, true)
+            }
             Kept::No => Hemisphere::few(params, weight / RENT as f32, query.normal, stream),
         };
         // A cache without divisions ends before this.
@@ -156,8 +159,7 @@ impl<S: Sampler> Round<'_, S> {
     ) -> State<S::Origin> {
         let least = least_distance(&self.cache.limits);
         let cells: Vec<Cell> = returned.iter().map(|r| cell(*r, least)).collect();
-        let extras =
-            if self.kept == Kept::Yes { self.extras(query, &plan, &together(&cells, plan.len())) } else { Vec::new() };
+        let extras = Self::extras(&plan, &together(&cells, plan.len()));
         if extras.is_empty() {
             return State::Done(self.finish(query, &plan, &cells));
         }
@@ -176,14 +178,13 @@ impl<S: Sampler> Round<'_, S> {
     }
 
     /// Where a hemisphere takes extra samples: where cells differ from their neighbours.
-    fn extras(&self, query: &Query<S::Origin>, plan: &Hemisphere, cells: &[Cell]) -> Vec<Extra> {
-        let budget = budget(self.cache.params.super_samples, self.share(query), plan.grid().side());
-        if budget == 0 || cells.iter().any(|c| c.distance <= 0.0) {
+    fn extras(plan: &Hemisphere, cells: &[Cell]) -> Vec<Extra> {
+        if plan.extra() == 0 || cells.iter().any(|c| c.distance <= 0.0) {
             return Vec::new();
         }
         let brightness: Vec<f32> = cells.iter().map(|c| c.light.value.brightness()).collect();
         let counts =
-            allocate([plan.grid().rows(), plan.grid().columns()], &brightness, budget, |cell| plan.share(cell));
+            allocate([plan.grid().rows(), plan.grid().columns()], &brightness, plan.extra(), |cell| plan.share(cell));
         counts.iter().enumerate().flat_map(|(cell, &m)| (0..m).map(move |k| (cell, k))).collect()
     }
 
@@ -241,11 +242,6 @@ impl<S: Sampler> Round<'_, S> {
             }
             other => other,
         }
-    }
-
-    /// The share of `-ad` and `-as` that a query's record gets.
-    fn share(&self, query: &Query<S::Origin>) -> f32 {
-        self.cache.worth.share(query.level, self.cache.limits.record_weight(query.level, query.weight))
     }
 
     /// The passes that a hemisphere's samples are traced in: all that a record has values of, or the one that asks.

@@ -4,7 +4,7 @@ use crate::params::Limits;
 use crate::sampler::Query;
 
 /// The most hemispheres of a round. Part of the result, so it must not depend on the number of threads.
-pub(crate) const CAP: usize = 64;
+pub(crate) const CAP: usize = 128;
 
 /// The hemispheres of a round.
 pub(crate) struct Selection {

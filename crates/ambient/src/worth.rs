@@ -10,7 +10,8 @@
 //! n and M are those of the whole scene so far, for it is not known which records a value shares. In a building of many
 //! rooms alike both grow with the rooms, and their ratio is too small: [`LEAST`] bounds what that can do.
 //!
-//! Records are counted between rounds, so that the answer depends neither on threads nor on time.
+//! Records are counted between rounds, and in a round by the order of its hemispheres, so that the answer depends neither on
+//! threads nor on time.
 
 /// The power of √n / M.
 const POWER: f32 = 0.6;
@@ -49,16 +50,16 @@ impl Worth {
         self.records[level] += 1;
     }
 
-    /// The share of `-ad` and `-as` that the hemisphere of a record of this level and weight gets: at most the square of
-    /// its weight. Radiance samples in proportion to the weight; but a deeper record is one of hundreds that a
+    /// The share of `-ad` and `-as` that the hemisphere of a record of this level and weight gets, where so many of its round
+    /// come before it: at most the square of its weight. Radiance samples in proportion to the weight; but a deeper record is one of hundreds that a
     /// hemisphere above it sees, and their noise is averaged there.
-    pub(crate) fn share(&self, level: u8, weight: f32) -> f32 {
+    pub(crate) fn share(&self, level: u8, weight: f32, before: usize) -> f32 {
         let square = weight * weight;
         if level == 0 {
             return square;
         }
         let seen = (self.records(0) + self.open).max(1) as f32;
-        let records = self.records(level).max(1) as f32;
+        let records = (self.records(level) + before).max(1) as f32;
         (SCALE * weight * (seen.sqrt() / records).powf(POWER)).clamp(LEAST * square, square)
     }
 }
@@ -71,11 +72,12 @@ mod tests {
     fn the_more_records_share_a_value_the_fewer_samples_each_gets() {
         let mut worth = Worth::default();
         worth.expect(100);
-        let mut last = worth.share(1, 0.5);
+        let mut last = worth.share(1, 0.5, 0);
         assert_eq!(last, 0.25, "the first get the square of their weight");
         for made in 1..=10_000 {
+            let share = worth.share(1, 0.5, 1);
             worth.made(1);
-            let share = worth.share(1, 0.5);
+            assert_eq!(share, worth.share(1, 0.5, 0), "one that is about to come counts as one that has");
             assert!(share <= last);
             last = share;
             assert!(made == 320 || (share == 0.25) == (made < 320), "up to 32 √n: {share} at {made}");
@@ -86,8 +88,8 @@ mod tests {
         }
         assert_eq!(last, 0.0625, "a quarter of that at least");
         worth.expect(1_000_000);
-        assert!(worth.share(1, 0.5) > last, "they are worth more to more hemispheres");
-        assert_eq!(worth.share(0, 1.0), 1.0, "what is seen directly gets all");
-        assert_eq!(worth.share(2, 0.25), 0.0625, "other levels count by themselves");
+        assert!(worth.share(1, 0.5, 0) > last, "they are worth more to more hemispheres");
+        assert_eq!(worth.share(0, 1.0, 0), 1.0, "what is seen directly gets all");
+        assert_eq!(worth.share(2, 0.25, 0), 0.0625, "other levels count by themselves");
     }
 }

@@ -5,7 +5,7 @@ use crate::fill::key;
 use crate::finish::{Cell, Outcome, finish, mean};
 use crate::hemisphere::Hemisphere;
 use crate::params::Params;
-use crate::supersample::{allocate, budget};
+use crate::supersample::allocate;
 use crate::{Cache, Light, Query};
 use ambit_base::{Colour, Stream};
 
@@ -18,7 +18,7 @@ pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &m
         return value;
     }
     let params = *cache.params();
-    let share = cache.worth.share(query.level, Params::record_weight(query.level, query.weight));
+    let share = cache.worth.share(query.level, Params::record_weight(query.level, query.weight), 0);
     let stream = Stream::new(0, key(query, params.seed));
     let plan = Hemisphere::new(&params, share, 1.0, query.normal, stream, true).expect("there are divisions");
     let mut look = |cache: &mut Cache, direction, number| {
@@ -36,8 +36,7 @@ pub(crate) fn ask(cache: &mut Cache, room: &Room, query: &Query<()>, samples: &m
         })
         .collect();
     let brightness: Vec<f32> = cells.iter().map(|c| c.light.value.brightness()).collect();
-    let budget = budget(params.super_samples, share, plan.grid().side());
-    let counts = allocate([plan.grid().rows(), plan.grid().columns()], &brightness, budget, |c| plan.share(c));
+    let counts = allocate([plan.grid().rows(), plan.grid().columns()], &brightness, plan.extra(), |c| plan.share(c));
     let mut number = plan.len();
     for (cell, &count) in counts.iter().enumerate() {
         let mut sum = cells[cell].light;
