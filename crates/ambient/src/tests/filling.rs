@@ -157,10 +157,16 @@ fn the_more_records_share_a_value_the_fewer_samples_each_has() {
         let deeper = cache.records().iter().filter(|r| r.level == 1).count();
         (deeper, cache.statistics().samples[1] as f64 / deeper as f64)
     };
-    // The first ones have 256, the last ones of many a quarter of that.
+    // Below one point the first ones have 256, the k-th 2048 k⁻·⁶, the last ones of many a quarter of 256; grids are square.
+    let expected = |records: usize| {
+        let sum: f64 = (1..=records).map(|k| (2048.0 * (k as f64).powf(-0.6)).clamp(64.0, 256.0)).sum();
+        sum / records as f64
+    };
     let (many, few) = (samples(0.1, 1), samples(0.6, 1));
     assert!(many.0 > 5 * few.0, "{many:?}, {few:?}");
-    assert!((64.0..110.0).contains(&many.1) && (180.0..257.0).contains(&few.1), "{many:?}, {few:?}");
+    for (records, mean) in [many, few] {
+        assert!((mean / expected(records) - 1.0).abs() < 0.03, "{mean} for {} of {records}", expected(records));
+    }
     // More points that they serve are worth more.
     let (one, all) = (samples(0.3, 1), samples(0.3, 12));
     assert!(all.0 > 3 * one.0 && all.1 > 1.4 * one.1, "{all:?}, of one point {one:?}");
