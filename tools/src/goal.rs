@@ -19,8 +19,7 @@ pub(crate) const SIDE: u32 = 48;
 pub(crate) const RAYS: usize = 256;
 
 /// `-ds` and `-dt` from coarse to fine.
-const DIRECT: [(f64, f64); 6] =
-    [(1.0, 0.2), (0.5, 0.1), (0.25, 0.05), (0.12, 0.03), (0.06, 0.01), (0.03, 0.003)];
+const DIRECT: [(f64, f64); 6] = [(1.0, 0.2), (0.5, 0.1), (0.25, 0.05), (0.12, 0.03), (0.06, 0.01), (0.03, 0.003)];
 /// What stands for exact direct light.
 const EXACT_DIRECT: (f64, f64) = (0.015, 0.0);
 /// The part of the asked error that direct light may have: so much of it takes little from what interreflection may have.
