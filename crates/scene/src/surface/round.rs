@@ -156,7 +156,7 @@ impl Tidy {
             Kind::Sphere | Kind::Bubble => Shape::Sphere(Sphere { centre: point(r), radius: r[3], inward }),
             Kind::Ring => Shape::Ring(Ring {
                 centre: point(r),
-                normal: point(&r[3..]).normalize(),
+                normal: near_unit(point(&r[3..])).unwrap_or_else(|| point(&r[3..]).normalize()),
                 r0: r[6].min(r[7]),
                 r1: r[6].max(r[7]),
             }),
@@ -167,10 +167,19 @@ impl Tidy {
                     (p0, p1, r0, r1) = (p1, p0, r1, r0);
                 }
                 let length = p0.distance(p1);
-                Shape::Cone(Cone { p0, p1, r0, r1, axis: (p1 - p0) / length, length, inward })
+                // Times the reciprocal, as Radiance does: along a coordinate axis the last bit shows in boxes.
+                let axis = near_unit(p1 - p0).unwrap_or((p1 - p0) * length.recip());
+                Shape::Cone(Cone { p0, p1, r0, r1, axis, length, inward })
             }
         }
     }
+}
+
+/// The unit vector along one whose squared length is within 1e-6 of 1, to first order, as Radiance takes it: the error of
+/// 1e-13 shows in the last digit of cubes around rings and cones.
+fn near_unit(v: DVec3) -> Option<DVec3> {
+    let excess = v.length_squared() - 1.0;
+    (excess.abs() <= 1e-6).then(|| v * (1.0 - 0.5 * excess))
 }
 
 impl Source {

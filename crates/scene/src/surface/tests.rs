@@ -196,6 +196,22 @@ fn boxes_are_tight() {
 }
 
 #[test]
+fn axes_of_nearly_unit_length_are_unit_vectors_to_first_order() {
+    let bounds = |kind, reals: &[f64]| Shape::from_object(&one(kind, reals), 0).unwrap().0.bounds().unwrap();
+    // Lengths of 1 + 3e-7: oconv of Radiance prints a lower limit of -1.1724e-13 with a margin of 1e-5 where an exact axis
+    // would give 0.
+    let longer = 1.0 + 3e-7;
+    let squared: f64 = 0.36 + 0.49 + 0.16;
+    let [x, y, z] = [0.6, 0.7, 0.4].map(|c| c / squared.sqrt() * longer);
+    let reach = 5.0 * (1.0 - 0.16 / squared).sqrt();
+    let b = bounds(Kind::Cylinder, &[0.0, 0.0, reach, x, y, z + reach, 5.0]);
+    assert!((b.min.z + 1.172e-13).abs() < 2e-15, "{}", b.min.z);
+    // 1.627 times its reciprocal is a little less than 1: what a cylinder along an axis reaches beyond its ends.
+    let b = bounds(Kind::Cylinder, &[-0.536, 0.9037, 0.5495, -0.536, 0.9037, 2.1765, 0.24405]);
+    assert!((0.5495 - b.min.z - 3.64e-9).abs() < 1e-11, "{}", b.min.z);
+}
+
+#[test]
 fn cones_run_from_the_smaller_end() {
     let (shape, _) = Shape::from_object(&one(Kind::Cup, &[0.0, 0.0, 0.0, 0.0, 0.0, 4.0, 3.0, 1.0]), 0).unwrap();
     let Shape::Cone(c) = shape else { panic!("a cone") };
