@@ -51,13 +51,19 @@ impl Layout {
     pub(crate) fn even(first: f64, last: f64, count: usize) -> Self {
         let step = (last - first) / (count.max(2) - 1) as f64;
         let half = 0.5 * step.abs();
+        if step < 0.0 && count <= MAX_BANDS {
+            // Radiance keeps the outer limits in single precision. Borders are cut to whole nanometres later on: those that
+            // should be whole fall to either side of that.
+            let limit = |nm: f64| f64::from(nm as f32);
+            return Self { width: -step, ..Self::bands(limit(first + half), limit(last - half), count) };
+        }
         let bands = (0..count)
             .map(|i| {
                 let centre = first + step * i as f64;
                 (centre - half, centre + half)
             })
             .collect();
-        Self { bands, width: step.abs(), direct: step < 0.0 && count <= MAX_BANDS, repeat: 1 }
+        Self { bands, width: step.abs(), direct: false, repeat: 1 }
     }
 
     /// For values at wavelengths (nm) in order, either way: each stands for what is nearest to it.
@@ -177,7 +183,9 @@ mod tests {
     }
 
     /// First and last wavelength, values, and what Radiance makes of them.
-    const MEASURED: [(f64, f64, &[f64], [f32; 3]); 18] = [
+    const MEASURED: [(f64, f64, &[f64], [f32; 3]); 20] = [
+        (780.0, 380.0, &[1.0, 2.0, 3.0, 4.0], [1.959_488, 2.913_241, 3.538_31]),
+        (700.0, 400.0, &[1.0, 3.0, 5.0, 2.0, 4.0, 1.0, 3.0, 2.0, 5.0, 1.0], [3.774_155, 2.143_092, 3.560_428]),
         (380.0, 780.0, &[0.2, 0.4, 0.6, 0.8], [0.7, 0.5, 0.3]),
         (780.0, 380.0, &[1.0, 2.0, 3.0], [1.0, 2.0, 3.0]),
         (700.0, 500.0, &[1.0, 2.0, 3.0], [1.0, 2.0, 3.0]),
