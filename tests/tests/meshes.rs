@@ -3,16 +3,19 @@
 use ambit_tests::Program;
 
 /// The name, modifier and material that a ray meets: `M-Tri`, as Radiance calls triangles of materials of their own, or the
-/// mesh whose material they have.
+/// mesh whose material they have, or which gives them none.
 #[test]
 fn triangles_bear_the_name_of_what_has_their_material() {
     let scratch = tempfile::tempdir().expect("a scratch folder can be made");
     let write = |name: &str, bytes: &[u8]| std::fs::write(scratch.path().join(name), bytes).expect("a scratch folder");
     write("m.mat", b"void plastic own 0 0 5 .5 .5 .5 0 0\n");
-    write("m.obj", b"v -1 -1 0\nv 1 -1 0\nv 0 1 0\nusemtl own\nf 1 2 3\n");
-    let mesh = Program::new("obj2mesh").line("-a m.mat m.obj").within(scratch.path()).run().well("obj2mesh");
-    write("m.rtm", &mesh.out);
-    for (modifier, wanted) in [("void", "M-Tri own own"), ("red", "m red red")] {
+    let corners = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\n";
+    for (choice, modifier, wanted) in
+        [("usemtl own", "void", "M-Tri own own"), ("usemtl own", "red", "m red red"), ("", "void", "m void void")]
+    {
+        write("m.obj", format!("{corners}{choice}\nf 1 2 3\n").as_bytes());
+        let mesh = Program::new("obj2mesh").line("-a m.mat m.obj").within(scratch.path()).run().well("obj2mesh");
+        write("m.rtm", &mesh.out);
         write("s.rad", format!("void plastic red 0 0 5 .5 0 0 0 0 {modifier} mesh m 1 m.rtm 0 0\n").as_bytes());
         let octree = Program::new("oconv").line("s.rad").within(scratch.path()).run().well("oconv");
         write("s.oct", &octree.out);

@@ -27,7 +27,7 @@ pub(crate) trait Light {
         None
     }
     /// The name of an object.
-    fn name(&self, id: ObjectId) -> &[u8];
+    fn name(&self, id: ObjectId, modifier: ObjectId) -> &[u8];
 }
 
 /// A scene that is lit.
@@ -196,8 +196,8 @@ impl Light for Scene<'_> {
         self.spectrum.as_ref()?.spectra.as_ref()
     }
 
-    fn name(&self, id: ObjectId) -> &[u8] {
-        self.renderer.name(id)
+    fn name(&self, id: ObjectId, modifier: ObjectId) -> &[u8] {
+        self.renderer.name(id, modifier)
     }
 }
 

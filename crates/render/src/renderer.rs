@@ -216,13 +216,14 @@ impl Renderer {
     }
 
     /// Identifier of an object, in whatever encoding the scene has; `*` for [`VOID`] as a surface is the caller's affair.
-    pub fn name(&self, id: ObjectId) -> &[u8] {
+    /// `modifier` is that of the surface that was hit.
+    pub fn name(&self, id: ObjectId, modifier: ObjectId) -> &[u8] {
         if id == VOID {
             return b"void";
         }
         let object = self.scene.objects.object(id);
-        // A mesh whose triangles keep their own materials tells the name that Radiance gives triangles.
-        let triangles = object.kind == Kind::Mesh && object.modifier == VOID;
+        // Triangles that keep materials of their own tell the name that Radiance gives them; those without, the mesh's.
+        let triangles = object.kind == Kind::Mesh && object.modifier == VOID && modifier != VOID;
         if triangles { b"M-Tri" } else { self.scene.objects.name_bytes(id) }
     }
 }

@@ -24,7 +24,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 const MOST_ROUNDS: usize = 8;
 
 /// The names of objects, as the bytes that the scene has.
-pub type Names<'n> = &'n dyn Fn(ObjectId) -> &'n [u8];
+pub type Names<'n> = &'n dyn Fn(ObjectId, ObjectId) -> &'n [u8];
 
 /// What is shown a ray, its bins and what finds names.
 pub type Visit<'v> = &'v mut dyn FnMut(&TreeRay, Option<Bins<'_>>, Names<'_>);
@@ -162,7 +162,7 @@ impl Renderer {
             let (rays, passes) = braid(trees);
             let spectra = Spectra::of_tree(&self.options.spectrum, &passes);
             for (i, ray) in rays.iter().enumerate() {
-                visit(ray, Some(spectra.bins(i)), &|id| self.name(id));
+                visit(ray, Some(spectra.bins(i)), &|id, modifier| self.name(id, modifier));
             }
             (answers[0][0], Some(Spectra::gather(&self.options.spectrum, &answers)))
         };
@@ -207,7 +207,7 @@ impl Renderer {
         visit: &mut dyn FnMut(&TreeRay, Names<'_>),
     ) -> Answer {
         let tracer = Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works };
-        let names = |id: ObjectId| self.name(id);
+        let names = |id: ObjectId, modifier: ObjectId| self.name(id, modifier);
         let mut misses = Vec::new();
         let mut work = tracer.work();
         let mut watch = Watch { visit: &mut |ray| visit(ray, &names), hemispheres };

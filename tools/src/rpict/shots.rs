@@ -69,7 +69,7 @@ mod tests {
             unreachable!("pictures ask for no trees")
         }
 
-        fn name(&self, _: ObjectId) -> &[u8] {
+        fn name(&self, _: ObjectId, _: ObjectId) -> &[u8] {
             b"it"
         }
     }

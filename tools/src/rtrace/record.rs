@@ -45,7 +45,7 @@ impl<'a> RecordWriter<'a> {
             if answer.surface == VOID {
                 out.push(b'*');
             } else {
-                out.extend_from_slice(names(id));
+                out.extend_from_slice(names(id, answer.modifier));
             }
             out.push(b'\t');
         };

@@ -126,12 +126,12 @@ impl Stream {
                         light.check()?;
                     }
                     let answer = show(request, tree, bytes, light, out)?;
-                    records.write_all(bytes, &[answer], light.spectra(), &|id| light.name(id));
+                    records.write_all(bytes, &[answer], light.spectra(), &|id, modifier| light.name(id, modifier));
                     before = (answer.origin, answer.direction);
                 }
             } else {
                 light.trace(&requests, &mut answers)?;
-                records.write_all(bytes, &answers, light.spectra(), &|id| light.name(id));
+                records.write_all(bytes, &answers, light.spectra(), &|id, modifier| light.name(id, modifier));
                 if let Some(last) = answers.last() {
                     before = (last.origin, last.direction);
                 }
@@ -141,7 +141,7 @@ impl Stream {
             requests.clear();
             let mut flush = self.interval > 0 && unflushed >= self.interval;
             if zero {
-                records.write_bogus(bytes, before, &|id| light.name(id));
+                records.write_bogus(bytes, before, &|id, modifier| light.name(id, modifier));
                 made += 1;
                 // Alone it is written, but no reason to flush.
                 flush |= unflushed > 0;
@@ -241,7 +241,7 @@ mod tests {
             unreachable!("these tests ask for no trees")
         }
 
-        fn name(&self, _: ObjectId) -> &[u8] {
+        fn name(&self, _: ObjectId, _: ObjectId) -> &[u8] {
             b"it"
         }
     }

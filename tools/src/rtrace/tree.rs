@@ -33,7 +33,7 @@ impl<'a> TreeWriter<'a> {
     fn selects(&self, ray: &TreeRay, names: Names<'_>) -> bool {
         let listed = |list: &[String]| {
             ray.answer.surface != ambit_scene::VOID
-                && list.iter().any(|name| *bytes_of(name) == *names(ray.answer.modifier))
+                && list.iter().any(|name| *bytes_of(name) == *names(ray.answer.modifier, ray.answer.modifier))
         };
         match self.selection {
             Selection::All => true,
