@@ -57,7 +57,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         let Some(facing) = self.visible_side(ray, finish.tilt) else { return false };
         let colour = m.colour * finish.pattern;
-        let channels = self.material_channels(ray, &m.axis, &facing, colour);
+        let channels = self.turned_channels(ray, &m.axis, &facing, colour);
         let u = self.axis(&channels, &m.axis, 0);
         let facets = Facets::oriented(facing.normal, u, m.roughness);
 

@@ -100,7 +100,7 @@ impl<O: Observer> Walk<'_, O> {
         let Some(facing) = self.visible_side(ray, finish.tilt) else { return false };
         let diffuse = m.diffuse * finish.pattern;
         let cosine = facing.cosine.max(LEAST_COSINE);
-        let channels = self.material_channels(ray, &m.axis, &facing, diffuse);
+        let channels = self.turned_channels(ray, &m.axis, &facing, diffuse);
         let u = self.axis(&channels, &m.axis, 0);
         let (axes, powers) = if let Some(axes) = u.and_then(|u| tangents(facing.normal, u)) {
             (axes, m.powers)

@@ -1,7 +1,6 @@
 //! plasfunc, metfunc, transfunc and their data types: the specular lobe is a function of the direction to the light, and
 //! of measured data. It counts for direct light only; opaque to shadow rays.
 
-use super::program::put;
 use super::{Finish, NormalKind};
 use crate::Error;
 use crate::observer::Observer;
@@ -9,7 +8,6 @@ use crate::patterns::{Compiler, Functions, Recipe};
 use crate::ray::Ray;
 use crate::walk::Walk;
 use ambit_base::{EPSILON, Rgb};
-use ambit_cal::Channel;
 use ambit_scene::{DataTable, Kind, MAX_DIMENSIONS, ObjectId, Scene};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -87,13 +85,7 @@ impl<O: Observer> Walk<'_, O> {
         }
 
         let functions = &m.functions;
-        let mut channels = self.material_channels(ray, functions, &facing, colour);
-        if ray.cosine() < 0.0 {
-            // These functions see the surface turned to the viewer.
-            let frame = self.function_frame(ray, &functions.placement);
-            put(&mut channels, Channel::Nx, frame.direction_back(facing.geometric));
-            channels[Channel::Rdot as usize] *= -1.0;
-        }
+        let channels = self.turned_channels(ray, functions, &facing, colour);
         let frame = self.function_frame(ray, &functions.placement);
         self.direct_with(ray, None, |walk, l, omega| {
             let lambda = facing.normal.dot(l);

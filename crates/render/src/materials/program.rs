@@ -31,6 +31,23 @@ impl<O: Observer> Walk<'_, O> {
         c
     }
 
+    /// The same for materials whose functions see the surface turned to the viewer: N and Rdot, too.
+    pub(super) fn turned_channels(
+        &self,
+        ray: &Ray<'_>,
+        functions: &Functions,
+        facing: &Facing,
+        colour: Rgb,
+    ) -> Channels {
+        let mut c = self.material_channels(ray, functions, facing, colour);
+        if ray.cosine() < 0.0 {
+            let frame = self.function_frame(ray, &functions.placement);
+            put(&mut c, Channel::Nx, frame.direction_back(facing.geometric));
+            c[Channel::Rdot as usize] *= -1.0;
+        }
+        c
+    }
+
     /// Runs programs on one hit. None if an operation failed or a value is no finite number; faults end the
     /// calculation.
     pub(super) fn run<const N: usize>(
