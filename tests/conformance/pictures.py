@@ -22,14 +22,15 @@ def read(path):
     rows = np.zeros((height, width, 4), np.uint8)
     at = start
     for y in range(height):
-        at = _row(data, at, rows[y])
+        at = row(data, at, rows[y])
     if at != len(data):
         raise ValueError(f"{path}: {len(data) - at} bytes too many")
     scale = np.where(rows[..., 3:] > 0, np.ldexp(1.0, rows[..., 3:].astype(int) - 136), 0)
     return (rows[..., :3] + 0.5) * scale / exposure
 
 
-def _row(data, at, row):
+def row(data, at, row):
+    """Decodes the line that begins at byte `at` into the array `row` of bytes, and returns where the next one begins."""
     width = len(row)
     if not (8 <= width <= 0x7fff and data[at:at + 2] == b"\x02\x02"):
         row[:] = np.frombuffer(data, np.uint8, width * 4, at).reshape(width, 4)
