@@ -34,7 +34,10 @@ impl Cube {
         // Radiance 6.0a as distributed adds up the last side in this order; far from the origin the digits show it.
         size.z = (hi.z - b.min.z) + MARGIN;
         let edge = size.x.max(size.y).max(size.z);
-        Self { origin: (hi + lo - edge) * 0.5, edge }
+        let mut origin = (hi + lo - edge) * 0.5;
+        // So too the middle of that side, without the margins, which cancel.
+        origin.z = (b.max.z + b.min.z - edge) * 0.5;
+        Self { origin, edge }
     }
 
     /// The cube of `oconv -b x y z size`: a margin more on every side.
@@ -121,6 +124,12 @@ mod tests {
         let point = Bounds { min: DVec3::ONE, max: DVec3::ONE };
         assert_eq!(Cube::around(Some(point)).to_text(), ["0.99999", "0.99999", "0.99999", "2.00000000001e-05"]);
         assert_eq!(Cube::around(None).to_text(), ["0", "0", "0", "0"]);
+        // The exact lower z ends in ...8931555: which way it goes the last bit says.
+        let b = Bounds {
+            min: DVec3::new(-1.47834662954, -1.65067639, -0.852789704),
+            max: DVec3::new(0.620363752193, 1.48, 1.66394823089),
+        };
+        assert_eq!(Cube::around(Some(b)).to_text(), ["-1.99433963367", "-1.65068639", "-1.15976893156", "3.13069639"]);
         assert_eq!(Cube::given(DVec3::splat(-1.0), 8.0).to_text()[3], "8.00002");
     }
 
