@@ -42,7 +42,9 @@ impl<O: Observer> Walk<'_, O> {
         };
         let total = lobe.total(jittered(0));
         let options = &self.tracer.options.specular;
-        let rest = (total - through.map_or(0.0, |t| f64::from(t.colour.brightness()))).max(0.0);
+        // What the pattern keeps from the peak counts as scattered: so Radiance has it.
+        let seen = through.map_or(0.0, |t| (t.colour * lit.pattern).brightness());
+        let rest = (total - f64::from(seen)).max(0.0);
         if rest <= options.threshold + EPSILON {
             return rest as f32;
         }
