@@ -18,9 +18,9 @@ OWN = [("Three", [(0, 40, 1), (40, 90, 2)]), ("Nine", [(0, 20, 1), (20, 60, 4), 
 DIRECTIONS = ["Reflection Back", "Reflection Front", "Transmission Back", "Transmission Front"]
 
 
-def matrix_file(dice):
+def matrix_file(dice, peak=False):
     name, rings = dice.choice(OWN)
-    if dice.chance(0.4):
+    if peak or dice.chance(0.4):
         basis, size, bases = *dice.choice(list(BASES.items())), ""
     else:
         basis, size = name, sum(n for _, _, n in rings)
@@ -33,7 +33,7 @@ def matrix_file(dice):
     tables = {}
     for wavelength in colours:
         for direction in directions:
-            values = tables.setdefault(direction, table(dice, size))
+            values = tables.setdefault(direction, table(dice, size, peak and direction[0] == "T"))
             tint = 1 if wavelength == "Visible" else dice.uniform(0.9, 1.1)
             numbers = "\n".join(dice.choice([" ", ", "]).join(f"{v * tint:.5f}" for v in row) for row in values)
             parts.append(f"<WavelengthData><Wavelength unit=\"Integral\">{wavelength}</Wavelength><WavelengthDataBlock>"
@@ -42,8 +42,11 @@ def matrix_file(dice):
     return "".join(parts) + "</Layer></Optical></WindowElement>\n"
 
 
-def table(dice, size):
-    """Rows of cells that reflect less than all light, some directions none."""
+def table(dice, size, peak):
+    """Rows of cells that scatter less than all light, some directions none; or little, and a peak straight on."""
+    if peak:
+        straight = dice.uniform(0.2, 0.7) * size / 3.1416
+        return [[straight if i == j else dice.uniform(0.02, 0.05) for i in range(size)] for j in range(size)]
     values = [dice.uniform(0.02, 0.12) * dice.choice([1, 1, 1, 2, 0]) for _ in range(size)]
     return [[v * dice.uniform(0.8, 1.2) for v in values] for _ in range(size)]
 
@@ -73,8 +76,9 @@ def glazing(dice, model):
     under = dice.choice(["void", "void", "pattern", "texture"])
     if under != "void":
         under = {"pattern": pattern, "texture": texture}[under](dice, model)
-    file = model.file("xml", dice.choice([matrix_file, tree_file])(dice))
     kind = dice.choice(["BSDF", "BSDF", "aBSDF"])
+    # Where tables are noise all over, which cells are a peak differs.
+    file = model.file("xml", matrix_file(dice, peak=True) if kind == "aBSDF" else dice.choice([matrix_file, tree_file])(dice))
     up = [f"{c:.4g}" for c in dice.direction()] if under != "void" or dice.chance(0.7) else [within(dice, ["Px", "Py", "Pz"], -1, 1, 1) for _ in range(3)]
     thickness = [dice.choice(["0", "0", "0", ".1", "-.1"])] if kind == "BSDF" else []
     move = [] if under != "void" else dice.transform()

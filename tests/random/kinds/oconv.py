@@ -47,12 +47,12 @@ def make(dice):
 def settings(dice, box=True):
     words = dice.some(["-w", "-f"], 0.4)
     if dice.chance(0.4):
-        words += ["-n", dice.choice([1, 2, 5, 10, 50])]
-    if dice.chance(0.3):
+        # Few objects a cube take forever where surfaces cross, unless cubes end early.
+        words += dice.choice([["-n", 1, "-r", 32], ["-n", 2, "-r", 64], ["-n", 5, "-r", 200], ["-n", 10], ["-n", 50]])
+    elif dice.chance(0.3):
         words += ["-r", dice.choice([1, 2, 8, 64, 1000, 100000])]
     if box and dice.chance(0.2):
         words += ["-b", *dice.choice([[-10, -10, -10, 20], [-7.3, -8, -6.5, 16], [-1, -1, -1, 2]])]
-    dice.chance(0.5)
     return words
 
 

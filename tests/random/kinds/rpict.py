@@ -96,7 +96,7 @@ def recover(dice, options, looking, files):
     options = [*options, "-x", dice.randint(20, 60), "-y", dice.randint(20, 60), "-dv-"]
     words = [*looking, *options]
     first = Step("rpict", [*words, "scene.oct"], "first.hdr", picture, needed=True)
-    cut = f"head -c {dice.choice(['-0', '-1', '-40', '-90', '20', '0'])} first.hdr > part.hdr; wc -c < part.hdr > /dev/null"
+    cut = f"head -c {dice.choice(['-0', '-1', '-20', '20', '0'])} first.hdr > part.hdr; wc -c < part.hdr > /dev/null"
     cutting = Step("sh", ["-c", cut], "cut", same)
     again = dice.choice([
         Step("rpict", [*options, "-r", "part.hdr", "scene.oct"], "again.hdr", picture),

@@ -6,8 +6,8 @@ from kinds.scene import EXACT, build
 from outputs import Values, nothing, same
 
 FIELDS = "odvwlLcpnNsmMrxRX~"
-# Printed for every ray of a tree.
-TREE = "odvwlLpnNsmMW"
+# Printed for every ray of a tree; not N, which Radiance leaves to chance where rays meet the sky.
+TREE = "odvwlLpnsmMW"
 # Known to differ: what lies behind translucent surfaces if rays have ends.
 OPAQUE = ["plastic", "metal", "glass", "plastic2", "metal2", "ashik2", "mirror"]
 
