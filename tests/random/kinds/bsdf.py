@@ -77,7 +77,7 @@ def glazing(dice, model):
     if under != "void":
         under = {"pattern": pattern, "texture": texture}[under](dice, model)
     kind = dice.choice(["BSDF", "BSDF", "aBSDF"])
-    # Where tables are noise all over, which cells are a peak differs.
+    # Where tables are noise all over, which cells are a peak differs; so does it near borders of cells, a debt.
     file = model.file("xml", matrix_file(dice, peak=True) if kind == "aBSDF" else dice.choice([matrix_file, tree_file])(dice))
     up = [f"{c:.4g}" for c in dice.direction()] if under != "void" or dice.chance(0.7) else [within(dice, ["Px", "Py", "Pz"], -1, 1, 1) for _ in range(3)]
     thickness = [dice.choice(["0", "0", "0", ".1", "-.1"])] if kind == "BSDF" else []
