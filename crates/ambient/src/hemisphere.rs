@@ -81,8 +81,11 @@ impl Hemisphere {
         let grid = if classical { Grid::polar(divisions * weight) } else { Grid::Disk { side } };
         let child_weight = if caching { ASSUMED_REFLECTANCE as f32 } else { coefficient / (side * side) as f32 };
         let plan = Self::in_cells(grid, child_weight, normal, stream);
+        if !caching {
+            return Some(plan);
+        }
         let extra = budget(params.super_samples, weight as f32, grid.side());
-        Some(if caching { Self { extra, ..plan.keep_directions() } } else { plan })
+        Some(Self { extra, ..plan.keep_directions() })
     }
 
     /// Plans a hemisphere of at most `-ad` × `weight` samples, one at least, whose value is not kept. Its rays weigh what

@@ -51,8 +51,8 @@ impl Worth {
     }
 
     /// The share of `-ad` and `-as` that the hemisphere of a record of this level and weight gets, where so many of its round
-    /// come before it: at most the square of its weight. Radiance samples in proportion to the weight; but a deeper record is one of hundreds that a
-    /// hemisphere above it sees, and their noise is averaged there.
+    /// come before it: at most the square of its weight. Radiance samples in proportion to the weight; but a deeper record is
+    /// one of hundreds that a hemisphere above it sees, and their noise is averaged there.
     pub(crate) fn share(&self, level: u8, weight: f32, before: usize) -> f32 {
         let square = weight * weight;
         if level == 0 {

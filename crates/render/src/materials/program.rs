@@ -31,7 +31,7 @@ impl<O: Observer> Walk<'_, O> {
         c
     }
 
-    /// The same for materials whose functions see the surface turned to the viewer: N and Rdot, too.
+    /// As [`Walk::material_channels`], for materials whose functions see the surface turned to the viewer: N and Rdot, too.
     pub(super) fn turned_channels(
         &self,
         ray: &Ray<'_>,
