@@ -64,41 +64,35 @@ impl Cache {
     ) -> Vec<Outcome> {
         let (samples, repaired) = (AtomicU64::new(0), AtomicU64::new(0));
         let first = Round { cache: &*self, sampler, kept, samples: &samples, repaired: &repaired };
-        let mut states = self.steps.chains(chosen.len(), |k, chain| first.begin(&queries[chosen[k]], k, chain));
+        let numbers = (0..chosen.len()).collect();
+        let mut stopped =
+            self.steps.chains(numbers, |k: usize, chain| (k, first.begin(&queries[chosen[k]], k, chain)));
+        let mut outcomes = vec![Outcome::Nothing; chosen.len()];
         loop {
-            let mut waiting: Vec<usize> = Vec::new();
-            let mut misses = Vec::new();
-            for (k, state) in states.iter_mut().enumerate() {
-                if let State::Waiting(hemisphere) = state {
-                    waiting.push(k);
-                    misses.append(&mut hemisphere.sampled.misses);
+            let mut waiting = Vec::new();
+            for (k, state) in stopped {
+                match state {
+                    State::Done(outcome) => outcomes[k] = outcome,
+                    State::Waiting(hemisphere) => waiting.push((k, hemisphere)),
                 }
             }
             if waiting.is_empty() {
                 break;
             }
-            let mut answers = misses.iter().zip(self.answers(sampler, &misses));
-            for &k in &waiting {
-                if let State::Waiting(hemisphere) = &mut states[k] {
-                    let Sampled { returned, owners, .. } = &mut hemisphere.sampled;
-                    for (owner, (miss, answer)) in owners.iter().zip(answers.by_ref()) {
-                        if let Some(sample) = &mut returned[*owner as usize] {
-                            sample.light += answer.times(miss.coefficient);
-                        }
-                    }
-                }
+            let mut misses = Vec::with_capacity(waiting.iter().map(|(_, w)| w.sampled.misses.len()).sum());
+            let mut work = Vec::with_capacity(waiting.len());
+            for (k, mut hemisphere) in waiting {
+                let begin = misses.len();
+                misses.append(&mut hemisphere.sampled.misses);
+                work.push((k, hemisphere, begin..misses.len()));
             }
+            let answers = self.answers(sampler, &misses);
             let next = Round { cache: &*self, sampler, kept, samples: &samples, repaired: &repaired };
-            let went = self.steps.chains(waiting.len(), |i, chain| {
-                let k = waiting[i];
-                match &states[k] {
-                    State::Waiting(hemisphere) => next.go_on(&queries[chosen[k]], hemisphere, chain),
-                    State::Done(outcome) => State::Done(outcome.clone()),
-                }
+            stopped = self.steps.chains(work, |(k, hemisphere, missed), chain| {
+                let answered = misses[missed.clone()].iter().zip(&answers[missed]);
+                let light = answered.map(|(miss, answer)| answer.times(miss.coefficient));
+                (k, next.go_on(&queries[chosen[k]], *hemisphere, light, chain))
             });
-            for (k, state) in waiting.into_iter().zip(went) {
-                states[k] = state;
-            }
         }
         let level = usize::from(level);
         if self.statistics.samples.len() <= level {
@@ -106,11 +100,7 @@ impl Cache {
         }
         self.statistics.samples[level] += samples.into_inner();
         self.statistics.repaired += repaired.into_inner();
-        let outcome = |state| match state {
-            State::Done(outcome) => outcome,
-            State::Waiting(_) => Outcome::Nothing,
-        };
-        states.into_iter().map(outcome).collect()
+        outcomes
     }
 }
 
@@ -140,12 +130,23 @@ impl<S: Sampler> Round<'_, S> {
         }
     }
 
-    /// Goes on when all that it missed has been added to its samples.
-    fn go_on(&self, query: &Query<S::Origin>, waiting: &Waiting<S::Origin>, chain: &mut Chain) -> State<S::Origin> {
-        let Waiting { plan, before, sampled } = waiting;
+    /// Goes on with the light of all that it missed.
+    fn go_on(
+        &self,
+        query: &Query<S::Origin>,
+        waiting: Waiting<S::Origin>,
+        light: impl Iterator<Item = Light>,
+        chain: &mut Chain,
+    ) -> State<S::Origin> {
+        let Waiting { plan, before, sampled: Sampled { mut returned, owners, .. } } = waiting;
+        for (owner, light) in owners.into_iter().zip(light) {
+            if let Some(sample) = &mut returned[owner as usize] {
+                sample.light += light;
+            }
+        }
         match before {
-            None => self.extend(query, plan.clone(), &sampled.returned, chain),
-            Some((cells, extras)) => State::Done(self.refine(query, plan, cells.clone(), extras, &sampled.returned)),
+            None => self.extend(query, plan, &returned, chain),
+            Some((cells, extras)) => State::Done(self.refine(query, &plan, cells, &extras, &returned)),
         }
     }
 

@@ -159,17 +159,22 @@ impl Steps {
         all
     }
 
-    /// `f(0), f(1), … f(count − 1)` in parallel, each of which may use others for a part of its work.
-    pub(crate) fn chains<R: Send>(&self, count: usize, f: impl Fn(usize, &mut Chain) -> R + Sync + Send) -> Vec<R> {
+    /// `f` of each piece of work, in parallel, each of which may use others for a part of its work.
+    pub(crate) fn chains<W: Send, R: Send>(
+        &self,
+        work: Vec<W>,
+        f: impl Fn(W, &mut Chain) -> R + Sync + Send,
+    ) -> Vec<R> {
+        let work = work.into_par_iter().with_max_len(1);
         let all = match &self.timed {
-            None => in_order(count, 1, |k| f(k, &mut Chain::new(None))),
+            None => work.map(|piece| f(piece, &mut Chain::new(None))).collect(),
             Some(timed) => timed.step(|own| {
-                let all = in_order(count, 1, |k| {
+                let each = work.map(|piece| {
                     let mut chain = Chain::new(Some(own));
-                    let result = f(k, &mut chain);
+                    let result = f(piece, &mut chain);
                     (result, chain.end())
                 });
-                all.into_iter().unzip()
+                each.unzip()
             }),
         };
         self.awake.keep();
