@@ -10,7 +10,7 @@ use ambit_render::picture::SourceOutline;
 use ambit_render::{
     Answer, Definition, Environment, Options, Renderer, Request, SceneFingerprint, Spectra, Store, Visit, load,
 };
-use ambit_scene::{ErrorClass, ObjectId, Shell};
+use ambit_scene::{Commands, ErrorClass, ObjectId};
 
 /// What answers rays: the renderer, or a stand-in for tests.
 pub(crate) trait Light {
@@ -82,7 +82,8 @@ impl<'a> Scene<'a> {
                 Function::Expression(text) => Definition::Text(text.clone()),
             })
             .collect();
-        let environment = Environment { find: &find, notify: &session.messages, definitions: &definitions };
+        let commands = Commands::new(&session.search);
+        let environment = Environment { find: &find, commands, notify: &session.messages, definitions: &definitions };
         let loaded = load(source, &environment).map_err(failed)?;
         let header = loaded.header().clone();
         // Where nothing asks for records, a file without them would only be in the way of runs that do.
@@ -202,8 +203,8 @@ impl Light for Scene<'_> {
 }
 
 /// The octree of this name, which may be a `!command`.
-pub(crate) fn octree(name: &str) -> Result<Source, Stop> {
-    Source::open(name, &mut Shell).map_err(|e| failed(e.into()))
+pub(crate) fn octree(name: &str, session: &Session) -> Result<Source, Stop> {
+    Source::open(name, &mut Commands::new(&session.search)).map_err(|e| failed(e.into()))
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "it is what map_err hands over")]

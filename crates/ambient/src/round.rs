@@ -65,8 +65,7 @@ impl Cache {
         let (samples, repaired) = (AtomicU64::new(0), AtomicU64::new(0));
         let first = Round { cache: &*self, sampler, kept, samples: &samples, repaired: &repaired };
         let numbers = (0..chosen.len()).collect();
-        let mut stopped =
-            self.steps.chains(numbers, |k: usize, chain| (k, first.begin(&queries[chosen[k]], k, chain)));
+        let mut stopped = self.steps.chains(numbers, |k: usize, chain| (k, first.begin(&queries[chosen[k]], k, chain)));
         let mut outcomes = vec![Outcome::Nothing; chosen.len()];
         loop {
             let mut waiting = Vec::new();

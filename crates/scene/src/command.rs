@@ -1,6 +1,13 @@
 //! Commands in scene text: `!genbox …` lines whose standard output is scene text.
 
+use crate::xform;
+use ambit_file::SearchPath;
+use std::ffi::OsStr;
 use std::io;
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::process::CommandExt;
+use std::path::Path;
+use std::process::{Command, Stdio};
 
 /// What a command left behind.
 #[derive(Clone, Debug, Default)]
@@ -11,7 +18,7 @@ pub struct CommandOutput {
     pub success: bool,
 }
 
-/// Runs the commands of scene text; tools use [`Shell`], tests their own.
+/// Runs the commands of scene text; tools use [`Commands`], tests their own.
 pub trait Runner {
     /// Runs a command (without its `!`).
     ///
@@ -20,26 +27,44 @@ pub trait Runner {
     fn run(&mut self, command: &[u8]) -> io::Result<CommandOutput>;
 }
 
-/// Hands commands to `/bin/sh -c` in the present working directory; they inherit standard input and standard error.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Shell;
+/// Hands commands to `/bin/sh -c` in the present working directory; they inherit standard input and standard error. What
+/// `xform` would do is done without it where that is plain.
+#[derive(Clone, Copy, Debug)]
+pub struct Commands<'a> {
+    /// Where `xform` finds its files.
+    pub(crate) search: &'a SearchPath,
+}
 
-impl Runner for Shell {
-    fn run(&mut self, command: &[u8]) -> io::Result<CommandOutput> {
-        use std::os::unix::ffi::OsStrExt;
-        use std::os::unix::process::CommandExt;
-        use std::process::{Command, Stdio};
-        let output = Command::new("/bin/sh")
-            .arg0("sh")
-            .arg("-c")
-            .arg(std::ffi::OsStr::from_bytes(command))
-            .stdin(Stdio::inherit())
-            .stderr(Stdio::inherit())
-            .stdout(Stdio::piped())
-            .spawn()?
-            .wait_with_output()?;
-        Ok(CommandOutput { text: output.stdout, success: output.status.success() })
+impl<'a> Commands<'a> {
+    /// Commands whose files are found along this path.
+    pub fn new(search: &'a SearchPath) -> Self {
+        Self { search }
     }
+
+    /// Runs a command in a folder; so many others have asked for it, one after the other.
+    pub(crate) fn run_in(&self, command: &[u8], folder: &Path, depth: usize) -> io::Result<CommandOutput> {
+        match xform::expand(command, folder, depth, self) {
+            Some(text) => Ok(CommandOutput { text, success: true }),
+            None => shell(command, folder),
+        }
+    }
+}
+
+impl Runner for Commands<'_> {
+    fn run(&mut self, command: &[u8]) -> io::Result<CommandOutput> {
+        self.run_in(command, Path::new(""), 0)
+    }
+}
+
+fn shell(command: &[u8], folder: &Path) -> io::Result<CommandOutput> {
+    let mut shell = Command::new("/bin/sh");
+    shell.arg0("sh").arg("-c").arg(OsStr::from_bytes(command));
+    if folder != "" {
+        shell.current_dir(folder);
+    }
+    let streams = shell.stdin(Stdio::inherit()).stderr(Stdio::inherit()).stdout(Stdio::piped());
+    let output = streams.spawn()?.wait_with_output()?;
+    Ok(CommandOutput { text: output.stdout, success: output.status.success() })
 }
 
 /// Refuses every command; for text that must not run any.

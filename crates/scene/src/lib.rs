@@ -16,9 +16,10 @@ mod reader;
 mod surface;
 mod text;
 mod tokens;
+mod xform;
 
 pub use arguments::{Arguments, RealCount};
-pub use command::{CommandOutput, NoCommands, Runner, Shell};
+pub use command::{CommandOutput, Commands, NoCommands, Runner};
 pub use data::{Axis, DataTable, MAX_DIMENSIONS};
 pub use error::{AuxiliaryProblem, Error, ErrorClass, ErrorKind, FontProblem, Problem};
 pub use font::{Font, GLYPH_SIZE, Glyph};

@@ -41,7 +41,7 @@ impl Scene {
 }
 
 /// A word, quoted if it is empty or has white space or quotes in it.
-fn print_word(word: &[u8], out: &mut impl Write) -> Result<()> {
+pub(crate) fn print_word(word: &[u8], out: &mut impl Write) -> Result<()> {
     let special = |b: &u8| crate::grammar::is_white(*b) || matches!(b, b'"' | b'\'');
     if !word.is_empty() && !word.iter().any(special) && !matches!(word[0], b'#' | b'!') {
         return out.write_all(word);

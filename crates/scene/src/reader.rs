@@ -243,7 +243,7 @@ impl<'a> Reader<'a> {
 }
 
 /// The strings, no integers, and the reals.
-fn arguments<'a>(lexer: &mut Lexer<'a>, reals: &mut Vec<f64>) -> Option<Vec<Cow<'a, [u8]>>> {
+pub(crate) fn arguments<'a>(lexer: &mut Lexer<'a>, reals: &mut Vec<f64>) -> Option<Vec<Cow<'a, [u8]>>> {
     let mut strings = Vec::new();
     for _ in 0..lexer.count()? {
         strings.push(lexer.word()?);

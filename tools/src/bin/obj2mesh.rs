@@ -2,9 +2,9 @@
 
 use ambit_base::Notify;
 use ambit_cli::{Class, ConsoleMessages, Failure, VERSION};
-use ambit_file::{Header, bytes_of, command_line, os_text, path_of};
+use ambit_file::{Header, Library, SearchPath, bytes_of, command_line, os_text, path_of, variable};
 use ambit_octree::{Error, Limits, MESH_LIMITS, compile_mesh};
-use ambit_scene::{ErrorClass, Reader, Scene, Shell};
+use ambit_scene::{Commands, ErrorClass, Reader, Scene};
 use std::fs::File;
 use std::io::{BufWriter, Read, Write, stdin};
 use std::process::ExitCode;
@@ -137,8 +137,9 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Failure> {
 
 fn materials(request: &Request, notify: &dyn Notify) -> Result<Scene, Failure> {
     let mut scene = Scene::new();
-    let mut shell = Shell;
-    let mut reader = Reader::new(&mut scene, notify, &mut shell);
+    let search = SearchPath::new(variable("RAYPATH").as_deref(), variable("HOME").as_deref(), Library::NONE);
+    let mut commands = Commands::new(&search);
+    let mut reader = Reader::new(&mut scene, notify, &mut commands);
     request.materials.iter().try_for_each(|file| reader.read(file)).map_err(|e| failure(&e.into()))?;
     Ok(scene)
 }

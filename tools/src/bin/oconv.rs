@@ -4,7 +4,7 @@ use ambit_base::{DVec3, Location, Notify};
 use ambit_cli::{Class, ConsoleMessages, Failure, StandardOutput, VERSION, answer};
 use ambit_file::{Header, Library, SearchPath, bytes_of, command_line, path_of, variable, word_of};
 use ambit_octree::{Cube, Error, Find, Limits, Objects, Prepared, Source, Tree};
-use ambit_scene::{ErrorClass, Reader, Scene, Shell};
+use ambit_scene::{Commands, ErrorClass, Reader, Scene};
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter};
 use std::process::ExitCode;
@@ -186,7 +186,7 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Stop> {
     let search = SearchPath::new(variable("RAYPATH").as_deref(), variable("HOME").as_deref(), Library::NONE);
     let find = |name: &str| search.find_path(name);
     let mut header = Header::empty();
-    let octree = convert(&request, &mut header, &find, &notify)?;
+    let octree = convert(&request, &mut header, &find, Commands::new(&search), &notify)?;
     header.push(command_line(&bytes_of(program), arguments.iter().map(|w| bytes_of(w))));
     let frozen = octree.frozen;
     let objects = if frozen {
@@ -207,14 +207,20 @@ struct Octree {
     tree: Tree,
 }
 
-fn convert(request: &Request, header: &mut Header, find: &Find<'_>, notify: &dyn Notify) -> Result<Octree, Stop> {
+fn convert(
+    request: &Request,
+    header: &mut Header,
+    find: &Find<'_>,
+    mut commands: Commands<'_>,
+    notify: &dyn Notify,
+) -> Result<Octree, Stop> {
     let mut scene = Scene::new();
     let mut names = Vec::new();
     let mut frozen = request.frozen;
     let mut start = None;
     if let Some(name) = &request.input {
-        let source = Source::open(name, &mut Shell)?;
-        let (loaded, tree) = ambit_octree::read_octree(&source.bytes, name, &mut scene, &mut Shell, notify)?;
+        let source = Source::open(name, &mut commands)?;
+        let (loaded, tree) = ambit_octree::read_octree(&source.bytes, name, &mut scene, &mut commands, notify)?;
         source.complain(notify);
         header.extend(loaded.header.lines_without_format());
         if loaded.frozen && !frozen && !request.files.iter().any(|f| f == "-") {
@@ -227,8 +233,7 @@ fn convert(request: &Request, header: &mut Header, find: &Find<'_>, notify: &dyn
         header.push("#?RADIANCE");
     }
     let first = scene.ids().end;
-    let mut shell = Shell;
-    let mut reader = Reader::new(&mut scene, notify, &mut shell);
+    let mut reader = Reader::new(&mut scene, notify, &mut commands);
     for name in &request.files {
         if name == "-" {
             frozen = true;

@@ -114,7 +114,7 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
 
 fn source(session: &Session) -> Result<Source, Stop> {
     if let Some(name) = &session.octree {
-        return octree(name);
+        return octree(name, session);
     }
     let mut bytes = Vec::new();
     stdin().lock().read_to_end(&mut bytes).map_err(|e| Failure::system("cannot read standard input", &e))?;

@@ -67,7 +67,7 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     };
     let job = Job::new(&options, session)?;
     start_threads(options.common.threads())?;
-    let source = light::octree(&octree)?;
+    let source = light::octree(&octree, session)?;
     let mut scene = Scene::open(session, source, &options.rendering, !job.spec.shades(), options.common.output)?;
     // Not by way of Rust's own buffer, of which a poll knows nothing.
     let input = stdin().as_fd().try_clone_to_owned().map_err(|e| Failure::system("cannot read standard input", &e))?;

@@ -4,7 +4,7 @@ use crate::Error;
 use ambit_base::{Notify, Transform};
 use ambit_file::{Header, name_of, os_text};
 use ambit_octree::{Cube, Mesh, Source};
-use ambit_scene::{Class, Kind, ObjectId, Scene, Shell};
+use ambit_scene::{Class, Commands, Kind, ObjectId, Scene};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -15,6 +15,8 @@ use std::sync::Arc;
 pub struct Environment<'a> {
     /// Finds an auxiliary file by the name that a scene gives it, along the search path.
     pub find: &'a (dyn Fn(&str) -> Option<PathBuf> + Sync),
+    /// Runs what scene files run.
+    pub commands: Commands<'a>,
     /// Receives warnings.
     pub notify: &'a dyn Notify,
     /// Definitions for function files from the command line, in order.
@@ -110,7 +112,8 @@ fn read(
     scene: &mut Scene,
     environment: &Environment<'_>,
 ) -> Result<ambit_octree::Loaded, Error> {
-    Ok(ambit_octree::read_scene(bytes, name, scene, &mut Shell, environment.notify)?)
+    let mut commands = environment.commands;
+    Ok(ambit_octree::read_scene(bytes, name, scene, &mut commands, environment.notify)?)
 }
 
 fn place(

@@ -1,7 +1,8 @@
 //! What Radiance 6.0a's `oconv` accepted, refused and stored.
 
 use super::*;
-use crate::{CommandOutput, ErrorClass, Shell};
+use crate::{CommandOutput, Commands, ErrorClass};
+use ambit_file::{Library, SearchPath};
 use std::collections::HashMap;
 use std::sync::Mutex;
 
@@ -302,7 +303,8 @@ fn commands_that_print_themselves_end() {
 #[test]
 fn the_shell_runs_commands() {
     let (mut scene, log) = (Scene::new(), Log::default());
-    let mut shell = Shell;
+    let search = SearchPath::new(None, None, Library::NONE);
+    let mut shell = Commands::new(&search);
     let mut reader = Reader::new(&mut scene, &log, &mut shell);
     reader.read("!echo void glow g 0 0 4 1 2 3 0; exit 3").unwrap();
     assert_eq!(scene.reals(0), [1.0, 2.0, 3.0, 0.0]);
@@ -314,7 +316,8 @@ fn files_that_cannot_be_opened_and_folders() {
     let (mut scene, log) = (Scene::new(), Log::default());
     let folder = tempfile::tempdir().unwrap();
     let missing = folder.path().join("missing.rad");
-    let mut shell = Shell;
+    let search = SearchPath::new(None, None, Library::NONE);
+    let mut shell = Commands::new(&search);
     let mut reader = Reader::new(&mut scene, &log, &mut shell);
     let error = reader.read_file(&missing).unwrap_err();
     let expected = format!("cannot open scene file \"{}\": No such file or directory", missing.display());
