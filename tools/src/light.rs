@@ -8,7 +8,8 @@ use ambit_file::{Header, general, path_of};
 use ambit_octree::Source;
 use ambit_render::picture::SourceOutline;
 use ambit_render::{
-    Answer, Definition, Environment, Options, Renderer, Request, SceneFingerprint, Spectra, Store, Visit, load,
+    Answer, Definition, Environment, Options, Rays, Renderer, Request, SceneFingerprint, Seen, Spectra, Store, Visit,
+    load,
 };
 use ambit_scene::{Commands, ErrorClass, ObjectId};
 
@@ -16,6 +17,8 @@ use ambit_scene::{Commands, ErrorClass, ObjectId};
 pub(crate) trait Light {
     /// Answers a batch, in order; the answers replace what is in `answers`.
     fn trace(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Stop>;
+    /// What a picture needs of the answers to a batch, in order; it replaces what is in `seen`.
+    fn see(&mut self, rays: &dyn Rays, seen: &mut Vec<Seen>) -> Result<(), Stop>;
     /// Answers one ray, and shows all that follow from it as they finish.
     fn trace_tree(&mut self, request: &Request, visit: Visit<'_>) -> Result<Answer, Stop>;
     /// An error if a signal has asked the work to stop.
@@ -176,6 +179,25 @@ impl Light for Scene<'_> {
             }
         }
         self.session.meter.set_rays(self.renderer.rays());
+        Ok(())
+    }
+
+    fn see(&mut self, rays: &dyn Rays, seen: &mut Vec<Seen>) -> Result<(), Stop> {
+        if self.spectrum.is_none() {
+            self.renderer.see(rays, &self.session.messages, seen).map_err(failed)?;
+            self.session.meter.set_rays(self.renderer.rays());
+            return Ok(());
+        }
+        // Spectra are made of whole answers.
+        let (places, requests): (Vec<usize>, Vec<Request>) =
+            (0..rays.count()).filter_map(|k| Some((k, rays.ray(k)?))).unzip();
+        let mut answers = Vec::new();
+        self.trace(&requests, &mut answers)?;
+        seen.clear();
+        seen.resize(rays.count(), Seen::default());
+        for (place, answer) in places.into_iter().zip(answers) {
+            seen[place] = Seen { value: answer.value, length: answer.length as f32 };
+        }
         Ok(())
     }
 

@@ -8,6 +8,7 @@ use crate::observer::Observer;
 use crate::picture::{SourceOutline, outlines};
 use crate::prepare::{Environment, Loaded, Prepared};
 use crate::ray::{Interior, Kinds, Ray};
+use crate::reply::{Rays, Reply, Seen};
 use crate::request::{Aim, Answer, Request};
 use crate::sharing::Sharing;
 use crate::sources::{Tally, sensor};
@@ -17,8 +18,9 @@ use crate::walk::Walk;
 use crate::work::Work;
 use crate::{Error, Options};
 use ambit_ambient::{Bounces, Cache, Miss, Params, Systems};
-use ambit_base::{DVec3, FAR, Notify, Rgb, Stream, hash_bits};
+use ambit_base::{DVec3, FAR, Notify, Stream, hash_bits};
 use ambit_scene::{Kind, ObjectId, VOID};
+use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 /// Most requests that are shaded against one state of the cache.
@@ -34,10 +36,9 @@ const SENSOR_LIFT: f64 = 1.1e-4;
 const SENSOR_DISTANCE: f64 = 1e-5;
 
 /// What one task of a batch brings.
-#[derive(Default)]
-struct Part {
+struct Part<R> {
     /// In each pass.
-    answers: Vec<Vec<Answer>>,
+    answers: Vec<Vec<R>>,
     /// Diffuse questions that are open, and the numbers of the answers that wait for them.
     misses: Vec<Miss<Origin>>,
     owners: Vec<usize>,
@@ -89,7 +90,7 @@ impl Renderer {
         requests: &[Request],
         notify: &dyn Notify,
     ) -> Result<(Vec<Answer>, Spectra), Error> {
-        let mut passes = vec![Vec::new(); self.passes()];
+        let mut passes: Vec<Vec<Answer>> = vec![Vec::new(); self.passes()];
         self.trace_passes(requests, notify, &mut passes)?;
         let spectra = Spectra::gather(&self.options.spectrum, &passes);
         Ok((passes.swap_remove(0), spectra))
@@ -103,26 +104,42 @@ impl Renderer {
     /// Answers `requests`, in order. Warnings (of the ambient file, of function files) go to `notify`. Answers replace what
     /// is in `answers`, so that one piece of memory serves many batches.
     pub fn trace(&mut self, requests: &[Request], notify: &dyn Notify, answers: &mut Vec<Answer>) -> Result<(), Error> {
+        self.trace_into(requests, notify, answers)
+    }
+
+    /// As [`Renderer::trace`], of rays that are made where they are needed, and kept as far as a picture needs it. What there
+    /// is no ray for is black and without length.
+    pub fn see(&mut self, rays: &dyn Rays, notify: &dyn Notify, seen: &mut Vec<Seen>) -> Result<(), Error> {
+        self.trace_into(rays, notify, seen)
+    }
+
+    fn trace_into<R: Reply>(
+        &mut self,
+        rays: &(impl Rays + ?Sized),
+        notify: &dyn Notify,
+        answers: &mut Vec<R>,
+    ) -> Result<(), Error> {
         let mut passes = vec![Vec::new(); self.passes()];
         passes[0] = std::mem::take(answers);
         passes[0].clear();
-        let outcome = self.trace_passes(requests, notify, &mut passes);
+        let outcome = self.trace_passes(rays, notify, &mut passes);
         *answers = passes.swap_remove(0);
         outcome
     }
 
     /// Adds the answers of all passes.
-    fn trace_passes(
+    fn trace_passes<R: Reply>(
         &mut self,
-        requests: &[Request],
+        rays: &(impl Rays + ?Sized),
         notify: &dyn Notify,
-        answers: &mut [Vec<Answer>],
+        answers: &mut [Vec<R>],
     ) -> Result<(), Error> {
+        let count = rays.count();
         for all in &mut *answers {
-            all.reserve(requests.len());
+            all.reserve(count);
         }
-        for batch in requests.chunks(BATCH) {
-            let outcome = self.batch(batch, answers);
+        for first in (0..count).step_by(BATCH) {
+            let outcome = self.batch(rays, first..count.min(first + BATCH), answers);
             self.complain(notify);
             outcome?;
             self.exchange(notify, false)?;
@@ -130,23 +147,29 @@ impl Renderer {
         Ok(())
     }
 
-    fn batch(&mut self, requests: &[Request], answers: &mut [Vec<Answer>]) -> Result<(), Error> {
+    fn batch<R: Reply>(
+        &mut self,
+        rays: &(impl Rays + ?Sized),
+        batch: Range<usize>,
+        answers: &mut [Vec<R>],
+    ) -> Result<(), Error> {
         let tracer = Tracer { scene: &self.scene, options: &self.options, tally: &self.tally, works: &self.works };
         let cache = &self.cache;
         let (first, passes) = (answers[0].len(), answers.len());
-        let piece = (requests.len() / PARALLEL_FROM).clamp(1, TOGETHER);
-        let parts = cache.steps().in_order(requests.len().div_ceil(piece), PARALLEL_FROM, 1, |k| {
-            let from = k * piece;
-            let requests = &requests[from..requests.len().min(from + piece)];
-            let mut part = Part { answers: vec![Vec::with_capacity(requests.len()); passes], ..Part::default() };
+        let piece = (batch.len() / PARALLEL_FROM).clamp(1, TOGETHER);
+        let parts = cache.steps().in_order(batch.len().div_ceil(piece), PARALLEL_FROM, 1, |k| {
+            let numbers = batch.start + k * piece..batch.end.min(batch.start + (k + 1) * piece);
+            let answers = vec![Vec::with_capacity(numbers.len()); passes];
+            let mut part = Part { answers, misses: Vec::new(), owners: Vec::new() };
             let mut work = tracer.work();
-            for (i, request) in requests.iter().enumerate() {
+            for number in numbers {
+                let request = rays.ray(number);
                 for (pass, answers) in part.answers.iter_mut().enumerate() {
                     let (misses, pass) = (&mut part.misses, pass as u8);
                     let mut walk = Walk { tracer: &tracer, cache, work: &mut work, misses, pass, observer: () };
-                    answers.push(walk.answer(request));
+                    answers.push(request.as_ref().map_or(R::NONE, |request| R::of(walk.answer(request))));
                 }
-                part.owners.resize(part.misses.len(), first + from + i);
+                part.owners.resize(part.misses.len(), first + number - batch.start);
             }
             part
         });
@@ -159,7 +182,7 @@ impl Renderer {
         if !misses.is_empty() && !self.scene.fault.is_set() {
             let values = self.cache.resolve(&tracer, &misses);
             for ((miss, value), owner) in misses.iter().zip(values).zip(owners) {
-                answers[usize::from(miss.query.pass)][owner].value += miss.coefficient * value;
+                answers[usize::from(miss.query.pass)][owner].add(miss.coefficient * value);
             }
         }
         for answer in answers.iter_mut().flat_map(|all| &mut all[first..]) {
@@ -347,16 +370,5 @@ impl<O: Observer> Walk<'_, O> {
         ray.point = ray.origin + ray.direction * hit.distance;
         ray.normal = if hit.cosine < 0.0 { -hit.normal } else { hit.normal };
         ray.hit = Some(hit);
-    }
-}
-
-impl Answer {
-    /// Keeps what is not a number, or infinite, out of pictures and tables.
-    pub(crate) fn make_finite(&mut self) {
-        for colour in [&mut self.value, &mut self.mirrored] {
-            if !colour.is_finite() {
-                *colour = Rgb::ZERO;
-            }
-        }
     }
 }

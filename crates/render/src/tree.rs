@@ -9,6 +9,7 @@ use crate::braid::braid;
 use crate::observer::Observer;
 use crate::ray::{Fate, Kinds, Ray};
 use crate::renderer::Renderer;
+use crate::reply::Reply;
 use crate::request::{Answer, Request};
 use crate::spectral::{Bins, Spectra};
 use crate::tracer::{Origin, Tracer};

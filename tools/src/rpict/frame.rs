@@ -12,7 +12,6 @@ use crate::session::{Session, Stop};
 use ambit_base::{Notify, Rgb};
 use ambit_cli::{Failure, PictureOptions};
 use ambit_file::{PixelSpace, Projection, View, fit_resolution};
-use ambit_render::Answer;
 use ambit_render::picture::{Band, Camera, Lens, Order, Pixel, Sampler, SmallSources};
 
 /// Most pixels across: samples are numbered along a Hilbert curve by 32 bits.
@@ -200,7 +199,7 @@ impl Picture<'_> {
         sampler.run(
             &mut |pixels| {
                 let light = &mut **scene.borrow_mut();
-                let answers = shots.trace(pixels, &|p| camera.ray(p), light, &|a| self.pixel(a))?;
+                let answers = shots.trace(pixels, &|p| camera.ray(p), light, &|s| self.pixel(s.value, s.length))?;
                 traced += pixels.len();
                 if traced <= first {
                     watch.borrow_mut().step(part(share * traced as f64 / first as f64));
@@ -212,7 +211,7 @@ impl Picture<'_> {
                     let (mut scene, mut answers) = (scene.borrow_mut(), Vec::new());
                     scene.check()?;
                     scene.trace(requests, &mut answers)?;
-                    Ok(answers.iter().map(|a| self.pixel(a)).collect())
+                    Ok(answers.iter().map(|a| self.pixel(a.value, a.length as f32)).collect())
                 })?;
                 let left = f64::from(band.top + 1) - band.rows.len() as f64;
                 let (colours, lengths): (Vec<Vec<Rgb>>, Vec<Vec<f32>>) =
@@ -226,7 +225,7 @@ impl Picture<'_> {
         )
     }
 
-    fn pixel(&self, answer: &Answer) -> Pixel {
-        Pixel { colour: self.conversion.apply(answer.value), distance: answer.length as f32 }
+    fn pixel(&self, value: Rgb, distance: f32) -> Pixel {
+        Pixel { colour: self.conversion.apply(value), distance }
     }
 }

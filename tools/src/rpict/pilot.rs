@@ -58,7 +58,7 @@ fn values(frame: &Frame, options: &PictureOptions, scene: &mut Scene<'_>) -> Res
                 let (x, y) = (place(p.x, width, frame.width), place(p.y, height, frame.height));
                 camera.ray(PixelRequest { x, y, index: p.index })
             };
-            shots.trace(pixels, &ray, scene, &|answer| Pixel { colour: answer.value, distance: 0.0 })
+            shots.trace(pixels, &ray, scene, &|seen| Pixel { colour: seen.value, distance: 0.0 })
         },
         &mut |band| {
             values.extend(band.rows.iter().flatten().map(|pixel| pixel.colour.to_array()));

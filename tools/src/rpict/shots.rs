@@ -3,15 +3,30 @@
 use crate::light::Light;
 use crate::session::Stop;
 use ambit_render::picture::{Pixel, PixelRequest};
-use ambit_render::{Answer, Request};
+use ambit_render::{Rays, Request, Seen};
 
-/// The rays of a batch of pixels.
+/// The ray of a pixel; none outside the view.
+pub(crate) type Aim<'a> = dyn Fn(PixelRequest) -> Option<Request> + Sync + 'a;
+
+/// What has been seen of a batch of pixels.
 #[derive(Default)]
 pub(crate) struct Shots {
-    requests: Vec<Request>,
-    /// Places in the batch of those pixels that have a ray.
-    places: Vec<usize>,
-    answers: Vec<Answer>,
+    seen: Vec<Seen>,
+}
+
+struct Batch<'a> {
+    pixels: &'a [PixelRequest],
+    aim: &'a Aim<'a>,
+}
+
+impl Rays for Batch<'_> {
+    fn count(&self) -> usize {
+        self.pixels.len()
+    }
+
+    fn ray(&self, number: usize) -> Option<Request> {
+        (self.aim)(self.pixels[number])
+    }
 }
 
 impl Shots {
@@ -19,23 +34,13 @@ impl Shots {
     pub(crate) fn trace(
         &mut self,
         pixels: &[PixelRequest],
-        aim: &dyn Fn(PixelRequest) -> Option<Request>,
+        aim: &Aim<'_>,
         light: &mut dyn Light,
-        pixel: &dyn Fn(&Answer) -> Pixel,
+        pixel: &dyn Fn(&Seen) -> Pixel,
     ) -> Result<Vec<Pixel>, Stop> {
-        self.requests.clear();
-        self.places.clear();
-        for (place, request) in pixels.iter().enumerate().filter_map(|(place, &p)| Some((place, aim(p)?))) {
-            self.requests.push(request);
-            self.places.push(place);
-        }
         light.check()?;
-        light.trace(&self.requests, &mut self.answers)?;
-        let mut all = vec![Pixel::default(); pixels.len()];
-        for (&place, answer) in self.places.iter().zip(&self.answers) {
-            all[place] = pixel(answer);
-        }
-        Ok(all)
+        light.see(&Batch { pixels, aim }, &mut self.seen)?;
+        Ok(self.seen.iter().map(pixel).collect())
     }
 }
 
@@ -43,26 +48,29 @@ impl Shots {
 mod tests {
     use super::*;
     use ambit_base::{DVec3, FAR, Rgb};
-    use ambit_render::{Aim, Visit};
+    use ambit_render::{Aim, Answer, Visit};
     use ambit_scene::ObjectId;
 
-    /// A light whose radiance is the ray's number; it insists on being given the memory of the answers before.
+    /// A light whose radiance is the ray's number; it insists on being given the memory of what was seen before.
     #[derive(Default)]
-    struct Plain(Option<(usize, *const Answer)>);
+    struct Plain(Option<(usize, *const Seen)>);
 
     impl Light for Plain {
-        fn trace(&mut self, requests: &[Request], answers: &mut Vec<Answer>) -> Result<(), Stop> {
+        fn see(&mut self, rays: &dyn Rays, seen: &mut Vec<Seen>) -> Result<(), Stop> {
             if let Some(before) = self.0 {
-                assert_eq!((answers.len(), answers.as_ptr()), before, "other memory than before");
+                assert_eq!((seen.len(), seen.as_ptr()), before, "other memory than before");
             }
-            answers.clear();
-            answers.extend(
-                requests
-                    .iter()
-                    .map(|r| Answer { value: Rgb::splat(r.index as f32), ..Answer::nothing(r.origin, r.direction) }),
-            );
-            self.0 = Some((answers.len(), answers.as_ptr()));
+            seen.clear();
+            seen.extend((0..rays.count()).map(|k| match rays.ray(k) {
+                Some(ray) => Seen { value: Rgb::splat(ray.index as f32), length: 1.0 },
+                None => Seen::default(),
+            }));
+            self.0 = Some((seen.len(), seen.as_ptr()));
             Ok(())
+        }
+
+        fn trace(&mut self, _: &[Request], _: &mut Vec<Answer>) -> Result<(), Stop> {
+            unreachable!("pictures need no whole answers")
         }
 
         fn trace_tree(&mut self, _: &Request, _: Visit<'_>) -> Result<Answer, Stop> {
@@ -82,7 +90,7 @@ mod tests {
             let (origin, direction, limit) = (DVec3::ZERO, DVec3::Z, FAR);
             (p.x % 3 != 2).then_some(Request { origin, direction, limit, index: p.index, aim: Aim::Radiance })
         };
-        let pixel = |a: &Answer| Pixel { colour: a.value, distance: 1.0 };
+        let pixel = |s: &Seen| Pixel { colour: s.value, distance: s.length };
         for count in [90u32, 9, 60, 0, 90] {
             let pixels: Vec<_> = (0..count).map(|k| PixelRequest { x: k, y: 0, index: 7 * k }).collect();
             let made = shots.trace(&pixels, &aim, &mut light, &pixel).unwrap();

@@ -203,7 +203,7 @@ mod tests {
     use crate::spectral::Converter;
     use ambit_base::Rgb;
     use ambit_cli::{InputFormat, Output, OutputFormat};
-    use ambit_render::Visit;
+    use ambit_render::{Rays, Seen, Visit};
     use ambit_scene::ObjectId;
     use std::cell::RefCell;
     use std::io::Read;
@@ -235,6 +235,10 @@ mod tests {
             answers.extend(requests.iter().map(answer));
             self.left = (answers.len(), answers.capacity());
             Ok(())
+        }
+
+        fn see(&mut self, _: &dyn Rays, _: &mut Vec<Seen>) -> Result<(), Stop> {
+            unreachable!("these tests ask for no pictures")
         }
 
         fn trace_tree(&mut self, _: &Request, _: Visit<'_>) -> Result<Answer, Stop> {
