@@ -214,9 +214,7 @@ impl Picture<'_> {
                     Ok(answers.iter().map(|a| self.pixel(a.value, a.length as f32)).collect())
                 })?;
                 let left = f64::from(band.top + 1) - band.rows.len() as f64;
-                let (colours, lengths): (Vec<Vec<Rgb>>, Vec<Vec<f32>>) =
-                    band.rows.iter().map(|row| row.iter().map(|p| (p.colour, p.distance)).unzip()).unzip();
-                output.pixels(colours.iter().map(Vec::as_slice).zip(lengths.iter().map(Vec::as_slice)))?;
+                output.pixels(&band.rows)?;
                 if left > 0.0 {
                     watch.borrow_mut().step(part(share + (1.0 - share) * (1.0 - left / f64::from(rows))));
                 }

@@ -2,9 +2,10 @@
 
 use super::frame::Frame;
 use crate::session::Stop;
-use ambit_base::Rgb;
 use ambit_cli::{Failure, StandardOutput};
 use ambit_file::{encode_pixel, encode_scanline, path_of};
+use ambit_render::picture::Pixel;
+use rayon::prelude::*;
 use std::fs::{File, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};
 
@@ -60,21 +61,28 @@ impl PictureOutput {
         for line in lines {
             encode_scanline(line, &mut bytes);
         }
-        let written = self.picture.write_all(&bytes).and_then(|()| self.picture.flush());
-        written.map_err(|e| Stop::writing("write error in render", &e))
+        self.write(&bytes)
     }
 
     /// Writes scanlines of pixels and their distances.
-    pub(crate) fn pixels<'a>(&mut self, lines: impl Iterator<Item = (&'a [Rgb], &'a [f32])>) -> Result<(), Stop> {
-        let (mut codes, mut distances) = (Vec::new(), Vec::new());
-        for (colours, lengths) in lines {
-            codes.push(colours.iter().map(|&c| encode_pixel(c)).collect());
-            distances.extend(lengths.iter().flat_map(|z| z.to_ne_bytes()));
-        }
-        self.codes(&codes)?;
+    pub(crate) fn pixels(&mut self, rows: &[Vec<Pixel>]) -> Result<(), Stop> {
+        let encoded = |row: &Vec<Pixel>| {
+            let codes: Vec<[u8; 4]> = row.iter().map(|pixel| encode_pixel(pixel.colour)).collect();
+            let mut bytes = Vec::new();
+            encode_scanline(&codes, &mut bytes);
+            bytes
+        };
+        let lines: Vec<Vec<u8>> = rows.par_iter().map(encoded).collect();
+        self.write(&lines.concat())?;
         if let Some(file) = &mut self.distances {
+            let distances: Vec<u8> = rows.iter().flatten().flat_map(|pixel| pixel.distance.to_ne_bytes()).collect();
             file.write_all(&distances).map_err(|e| Stop::writing("write error in render", &e))?;
         }
         Ok(())
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<(), Stop> {
+        let written = self.picture.write_all(bytes).and_then(|()| self.picture.flush());
+        written.map_err(|e| Stop::writing("write error in render", &e))
     }
 }

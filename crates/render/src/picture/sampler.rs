@@ -7,10 +7,14 @@ use super::lattice::Lattice;
 use super::order::{Batches, coarse_to_fine, hilbert_index};
 use super::slab::{Density, Rule, Slab};
 use ambit_base::Rgb;
+use rayon::prelude::*;
 
 /// Pixels that are decided together: enough to make large batches, few enough to get lines out soon. It is a count,
 /// so that results do not depend on threads.
 const SLAB_PIXELS: usize = 1 << 14;
+
+/// Pixels whose places along the curve are not worth more than one thread.
+const FEW: usize = 1024;
 
 /// The fraction of the pixels off the lattice that is traced in pictures of moderate detail; it only matters to reports.
 const USUALLY_TRACED: f64 = 0.25;
@@ -205,8 +209,9 @@ impl Sampler {
         batches: &mut Batches,
         trace: &mut Trace<'_, E>,
     ) -> Result<(), E> {
-        let mut wanted: Vec<PixelRequest> = missing.into_iter().map(|p| self.request(p)).collect();
-        wanted.sort_unstable_by_key(|r| r.index);
+        let mut wanted: Vec<PixelRequest> =
+            missing.into_par_iter().with_min_len(FEW).map(|p| self.request(p)).collect();
+        wanted.par_sort_unstable_by_key(|r| r.index);
         let mut rest = wanted.as_slice();
         while !rest.is_empty() {
             let (batch, later) = rest.split_at(batches.next(rest.len()));

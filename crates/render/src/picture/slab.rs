@@ -37,6 +37,15 @@ pub(crate) struct Slab<'a> {
     decided: Vec<Option<Pixel>>,
     /// Places in `traced` of the values that were missed.
     missing: Vec<usize>,
+    /// Columns between two lines of the lattice in which no value is missing, line by line.
+    settled: Vec<Option<Settled>>,
+}
+
+/// A column in which no value is missing: how busy it was said to be, and how busy it is.
+#[derive(Clone, Copy)]
+struct Settled {
+    hint: i32,
+    busy: i32,
 }
 
 impl<'a> Slab<'a> {
@@ -45,7 +54,8 @@ impl<'a> Slab<'a> {
         let (top, base) = (lattice.lines[lines.0], lattice.lines[lines.1]);
         let size = width as usize * (top - base + 1) as usize;
         let (traced, decided) = (vec![None; size], vec![None; size]);
-        Self { lattice, width: width as usize, lines, base, rule, traced, decided, missing: Vec::new() }
+        let settled = vec![None; width as usize * (lines.1 - lines.0)];
+        Self { lattice, width: width as usize, lines, base, rule, traced, decided, missing: Vec::new(), settled }
     }
 
     fn place(&self, x: u32, y: u32) -> usize {
@@ -121,10 +131,22 @@ impl<'a> Slab<'a> {
             // The first column is as busy as can be; a last step that is shorter counts as long as it is.
             let mut busy = (top - bottom) as i32;
             for x in 0..self.width {
-                busy = self.fill(self.place(x as u32, bottom), self.width, (top - bottom) as usize, busy / 2);
+                let column = (n - self.lines.0) * self.width + x;
+                busy = match self.settled[column] {
+                    Some(Settled { hint, busy: settled }) if hint == busy / 2 => settled,
+                    _ => self.decide_column(column, (self.place(x as u32, bottom), (top - bottom) as usize), busy / 2),
+                }
             }
         }
         self.missing.iter().map(|&p| self.pixel(p)).collect()
+    }
+
+    /// Decides a column's pixels from a place on upwards. Returns how many are traced.
+    fn decide_column(&mut self, column: usize, (at, length): (usize, usize), hint: i32) -> i32 {
+        let before = self.missing.len();
+        let busy = self.fill(at, self.width, length, hint);
+        self.settled[column] = (self.missing.len() == before).then_some(Settled { hint, busy });
+        busy
     }
 
     /// Decides the pixels inside a span from `at` over `length` steps, of which about `hint` are traced in any case.
