@@ -125,6 +125,9 @@ impl<R: Awaited> RayReader<R> {
 
     /// Number `i` of a ray.
     fn number(&mut self, i: usize) -> Option<f64> {
+        if let Some(number) = self.buffered() {
+            return Some(number);
+        }
         let Some(word) = self.word() else {
             self.odd = (i > 0).then(|| format!("last ray has {i} numbers of 6, and is left out"));
             return None;
@@ -135,6 +138,16 @@ impl<R: Awaited> RayReader<R> {
             self.odd = Some(format!("rays end at \"{}\" (expected a number{})", shown(&word), binary(&word)));
         }
         number
+    }
+
+    /// The next number, if its word is as plain as nearly all are and stands in the buffer, with what ends it.
+    fn buffered(&mut self) -> Option<f64> {
+        let buffer = self.input.buffer();
+        let start = buffer.iter().position(|&b| !is_space(b))?;
+        let length = buffer[start..].iter().take(LONGEST_WORD + 1).position(|&b| is_space(b))?;
+        let number = boundless_real(std::str::from_utf8(&buffer[start..start + length]).ok()?)?;
+        self.input.consume(start + length);
+        Some(number)
     }
 
     /// The next word: up to white space, or what stands between quotes.
