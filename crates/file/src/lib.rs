@@ -42,4 +42,4 @@ pub use rgbe::{decode_pixel, decode_spectrum, encode_pixel, encode_spectrum};
 pub use search::{DEFAULT_PATH, Found, Library, SearchPath};
 pub use stamp::{Zone, capture_lines};
 pub use view::{Fit, Projection, View, ViewError, ViewOption, ViewRay, ViewType, fit_resolution, is_view_line};
-pub use words::{WORD_LIMIT, boundless_real, integer, read_words, real, split_words};
+pub use words::{WORD_LIMIT, boundless_real, integer, read_words, real, short_decimal, split_words};

@@ -23,6 +23,43 @@ pub fn boundless_real(word: &str) -> Option<f64> {
     if plain { word.parse().ok() } else { None }
 }
 
+/// A number of the common kind at the beginning of a text, without exponent and of few digits, and how many bytes it has.
+/// What comes after it is not looked at. An integer below 2⁵³ divided by a power of ten up to 10²² is correctly rounded,
+/// both being exact (Clinger 1990), so this is what the standard library reads.
+#[inline]
+pub fn short_decimal(text: &[u8]) -> Option<(f64, usize)> {
+    /// As many digits as always fit 2⁵³.
+    const MAX_DIGITS: usize = 15;
+    const POWERS: [f64; MAX_DIGITS + 1] =
+        [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+    let minus = usize::from(text.first() == Some(&b'-'));
+    let (whole, digits) = digits(0, &text[minus..]);
+    let mut length = minus + digits;
+    let (mut value, mut decimals) = (whole, 0);
+    if text.get(length) == Some(&b'.') {
+        (value, decimals) = self::digits(whole, &text[length + 1..]);
+        length += 1 + decimals;
+    }
+    let count = digits + decimals;
+    if !(1..=MAX_DIGITS).contains(&count) {
+        return None;
+    }
+    let value = value as f64 / POWERS[decimals];
+    Some((if minus > 0 { -value } else { value }, length))
+}
+
+/// Digits, if there are any, appended to a number; wrapping if they are too many. And how many there are.
+#[inline]
+fn digits(mut number: u64, text: &[u8]) -> (u64, usize) {
+    for (count, &byte) in text.iter().enumerate() {
+        if !byte.is_ascii_digit() {
+            return (number, count);
+        }
+        number = number.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
+    }
+    (number, text.len())
+}
+
 /// An integer as options write it: `[+-]digits`, within 32 bits as the programs hold it.
 pub fn integer(word: &str) -> Option<i32> {
     word.parse().ok()

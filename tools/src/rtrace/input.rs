@@ -2,7 +2,7 @@
 
 use ambit_base::DVec3;
 use ambit_cli::InputFormat;
-use ambit_file::boundless_real;
+use ambit_file::{boundless_real, short_decimal};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 use std::io::{self, BufRead, BufReader, Read};
@@ -144,10 +144,10 @@ impl<R: Awaited> RayReader<R> {
     fn buffered(&mut self) -> Option<f64> {
         let buffer = self.input.buffer();
         let start = buffer.iter().position(|&b| !is_space(b))?;
-        let length = buffer[start..].iter().take(LONGEST_WORD + 1).position(|&b| is_space(b))?;
-        let number = boundless_real(std::str::from_utf8(&buffer[start..start + length]).ok()?)?;
-        self.input.consume(start + length);
-        Some(number)
+        let (number, length) = short_decimal(&buffer[start..])?;
+        let end = start + length;
+        let whole = length <= LONGEST_WORD && buffer.get(end).is_some_and(|&b| is_space(b));
+        whole.then(|| self.input.consume(end)).map(|()| number)
     }
 
     /// The next word: up to white space, or what stands between quotes.
