@@ -197,7 +197,7 @@ class Values:
         if len(a) != len(b):
             return False
         a, b = np.array(a), np.array(b)
-        if not np.isfinite(b).all():
+        if not a.size or not np.isfinite(b).all():
             return True
         scale = max(np.abs(b).max(), np.abs(a).max(), 1e-30) if np.isfinite(a).all() else 1
         step = 1 / 64 if letter == "8" else self.tolerance
