@@ -76,6 +76,11 @@ def picture(ours, theirs):
     return found + compare_pixels(a, b)
 
 
+def pixels(data):
+    """The pixels of a picture in a file."""
+    return _pixels(data, split(data)[1])
+
+
 def _pixels(data, at):
     end = data.index(b"\n", at) + 1
     _, height, _, width = data[at:end].split()

@@ -15,9 +15,9 @@ EXACT = "-w- -u- -ab 0 -dj 0 -dt 0 -dc 1 -ds 0 -ss 0 -lr 7 -lw 1e-6".split()
 SOLID = ["dielectric", "interface"]
 
 
-def build(dice, kinds=None, spectra=False, lamps=None):
-    model = Model()
-    if dice.chance(0.8):
+def build(dice, kinds=None, spectra=False, lamps=None, model=None, sky=True):
+    model = model or Model()
+    if sky and dice.chance(0.8):
         surroundings(dice, model, spectra)
     for _ in range(dice.randint(2, 5)):
         if dice.chance(0.15):
