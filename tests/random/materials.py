@@ -130,7 +130,14 @@ def modifier(dice, model, kinds=None, spectra=False):
     if dice.chance(0.1):
         name = model.name("a")
         model.parts.append(f"\n{dice.choice(['inherit', 'void'])} alias {name} {made}\n")
-        made = name
+        made = covered(model, made, name)
     if dice.chance(0.2):
-        made = dice.choice([pattern, texture])(dice, model, made)
+        made = covered(model, made, dice.choice([pattern, texture])(dice, model, made))
     return made
+
+
+def covered(model, under, name):
+    """What stands for a material shares its traits."""
+    if under in model.traits:
+        model.traits.add(name)
+    return name

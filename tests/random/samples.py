@@ -55,7 +55,7 @@ class Pictures:
             a, b = (self._pixels(data, turn) for data in (ours, theirs))
             if a.shape[1:] != b.shape[1:]:
                 return [f"{a.shape[1:]} and {b.shape[1:]} pixels"]
-            (m, e), (n, f) = ((x.mean(axis=0), x.std(axis=0, ddof=1) / len(x) ** 0.5) for x in (a, b))
+            (m, e), (n, f) = ((x.mean(axis=0), x.std(axis=0, ddof=min(1, len(x) - 1)) / len(x) ** 0.5) for x in (a, b))
             # Where few samples meet something the spread is often too small: neighbours share theirs.
             spread = _smoothed(np.hypot(e, f))
             off = (np.abs(m - n) > SIGMAS * spread + outputs.PIXEL * n.mean()).any(axis=2)

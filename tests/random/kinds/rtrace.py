@@ -33,7 +33,7 @@ def make(dice):
     if "mixed" in model.traits:
         # Nor do both sides agree on where the light of nothing comes from, which rounding decides.
         fields = re.sub("[nX]", "", fields) or "v"
-    if colours > 3:
+    if "-cs" in named:
         # What brings most is decided by three bins at a time, a known difference.
         fields = re.sub("[lRX]", "", fields) or "v"
     if "medium" in model.traits:
@@ -61,6 +61,8 @@ def make(dice):
     if dice.chance(0.1):
         files["more.opt"] = "-lw 1e-5\n\t-lr 4\n"
         options += ["@more.opt"]
+    if dice.chance(0.1):
+        options += odd(dice)
     stdin = pack(seen) + tail(dice, inward)
     look = Values(fields, outward, colours, None if stdin != pack(seen) else seen, pack, sized)
     octree = Step("oconv", ["-w", "scene.rad"], "scene.oct", same, needed=True)
@@ -68,6 +70,16 @@ def make(dice):
     if dice.chance(0.2):
         steps.append(Step("rtrace", [*options, "-defaults"], "defaults", nothing))
     return Case(files, steps)
+
+
+def odd(dice):
+    """Options that are refused, or nearly."""
+    return dice.choice([["-q"], ["-n", "x"], ["-n", 0], ["-x"], ["-x", -2], ["-y", -2], ["-x", 0, "-y", 3], ["-y", "x"], ["-fz"], ["-faq"], ["-f"], ["-o"], ["-oq"], ["-ovv"], ["-ot"],
+                        ["-oz"], ["-h+", "-h-"], ["-hx"], ["-lw", -0.1], ["-lw", 2], ["-lr", "x"], ["-ab", -1], ["-ab", "1e"], ["-av", 1, 1], ["-av", -1, 0, 2],
+                        ["-aw", 5], ["-ad", 0], ["-as", -3], ["-aa", -1], ["-ar", 0], ["-dt", 2], ["-dc", -1], ["-dj", 2], ["-ds", -0.2], ["-dr", -1], ["-dp", 0], ["-ss", -1], ["-st", 2],
+                        ["-i", "-I"], ["-I", "-i"], ["-ld", "-i"], ["-pc", 1, 2], ["-cs", 2], ["-cs", 2000], ["-cs", 0], ["-cw", 500], ["-cw", 500, 500], ["-co"], ["-co", "-pY"], ["-pY", "-cs", 9], ["-me", -1, 0, 0],
+                        ["-ma", 2, 2, 2], ["-mg", 1.5], ["-ms", -1], ["-te", "a", "-ti", "b"], ["-tE", "none"], ["-ae", "a", "-ai", "b"], ["-aE", "none"], ["-af"], ["-t", 5], ["-e", "none/e"],
+                        ["-w+"], ["-uu"], ["-bv", "-bv"], ["-am", 3], ["-ap", "none"], ["@none"], ["-version"], ["-help"], ["$NONE"], ["-dvx"], ["-u", "1"], ["more.oct"], ["-vp", 0, 0, 0]])
 
 
 def field(dice, outward):
