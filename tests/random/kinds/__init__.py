@@ -1,5 +1,5 @@
 """Kinds of cases: each a function from dice to a case."""
 
-from kinds import blur, bsdf, function, instance, mesh, oconv, rpict, rtrace, sampled, scene
+from kinds import blur, bsdf, function, generated, instance, mesh, oconv, rpict, rtrace, sampled, scene
 
-KINDS = {module.__name__.split(".")[-1]: module.make for module in (blur, bsdf, function, instance, mesh, oconv, rpict, rtrace, sampled, scene)}
+KINDS = {module.__name__.split(".")[-1]: module.make for module in (blur, bsdf, function, generated, instance, mesh, oconv, rpict, rtrace, sampled, scene)}
