@@ -1,5 +1,7 @@
 """Instances of scenes of all kinds, within instances, moved, turned, mirrored and scaled, beside meshes, under patterns and textures of their own."""
 
+import re
+
 import materials
 import rays
 from case import Case, Step
@@ -44,7 +46,7 @@ def make(dice):
     steps.append(Step("oconv", [*dice.some(["-f"], 0.3), "-w", "scene.rad"], "scene.oct", same, needed=True))
     fields = dice.choice(["v", "vLs", "vlpNn", "vsmM"])
     if "mixed" in traits:
-        fields = fields.replace("n", "")
+        fields = re.sub("[nlRX]", "", fields)
     seen = rays.at(dice, outer, 150, 0.5)
     pack = rays.packer("a")
     options = [*EXACT, "-st", "1" if "random" in traits else "0", *dice.choice([[], ["-av", *dice.colour()]]), *dice.choice([[], [], ["-i"]])]

@@ -32,7 +32,7 @@ def make(dice):
     irradiance = dice.chance(0.2)
     if "mixed" in model.traits:
         # Nor do both sides agree on where the light of nothing comes from, which rounding decides.
-        fields = re.sub("[nX]", "", fields) or "v"
+        fields = re.sub("[nlRX]", "", fields) or "v"
     if "-cs" in named:
         # What brings most is decided by three bins at a time, a known difference.
         fields = re.sub("[lRX]", "", fields) or "v"
