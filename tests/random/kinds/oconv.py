@@ -58,7 +58,7 @@ def settings(dice, box=True):
 
 def refused(dice):
     """Options that are refused, or nearly."""
-    return dice.choice([["-q"], ["-n"], ["-n", 0], ["-n", -1], ["-r", 0], ["-r", -5], ["-r", 1.5], ["-b", 0, 0, 0, 0], ["-b", 0, 0, 0, -2], ["-i"],
+    return dice.choice([["-q"], ["-n", 0], ["-n", -1], ["-r", 0], ["-r", -5], ["-r", 1.5], ["-b", 0, 0, 0, 0], ["-b", 0, 0, 0, -2], ["-i"],
                         ["-i", "none.oct"], ["-i", "scene.rad"], ["-w", "-w"], ["-fw"], ["-f", "-f"], ["none.rad"], ["-b", -5, -5, -5, 10, "-b", -9, -9, -9, 18], ["-N", 3]])
 
 

@@ -43,7 +43,9 @@ def make(dice):
     options += dice.choice([[], [], [], ["-pXYZ"], ["-pRGB"], ["-pc", .7, .3, .2, .7, .14, .05, .31, .33], ["-pc", .64, .33, .29, .6, .15, .06, .3333, .3333]])
     if dice.chance(0.3):
         options += ["-av", *dice.colour()]
-    options += dice.choice([[], [], [], ["-i"], ["-dv-"], ["-bv-"], ["-t", 0], ["-cs", 9], ["-cs", 6, "-cw", 400, 700], ["-me", 0.1, 0.05, 0.02], ["-ps", dice.choice([0, 2, 4, 20]), "-pt", 0]])
+    # Of patterns on what refracts Radiance makes other colours by wavelength, a known difference.
+    spectral = [["-cs", 9], ["-cs", 6, "-cw", 400, 700]] if "medium" not in model.traits else []
+    options += dice.choice([*spectral, [], [], [], ["-i"], ["-dv-"], ["-bv-"], ["-t", 0], ["-me", 0.1, 0.05, 0.02], ["-ps", dice.choice([0, 2, 4, 20]), "-pt", 0]])
     if "-vu" not in options and dice.chance(0.15):
         files["a.vf"] = dice.choice(["rvu ", "VIEW= ", "# nothing\nrpict -x 3 ", "#?RADIANCE\n\tVIEW= -vtv\nVIEW= ", "foo ", "bin/rpict "]) + text(view(dice, clip=clip)) + dice.choice(["\n", "", "\n\n"])
         looking = ["-vf", "a.vf", *dice.choice([[], ["-vh", 30], ["-vtv"]])]
