@@ -65,7 +65,9 @@ def material(dice, model, under="void", kinds=None):
         model.traits.add("medium")
         model.add(under, kind, name, [], [*dice.colour(0.5, 1), dice.real(1.1, 1.9), *dice.colour(0.5, 1), dice.real(1.1, 1.9)])
     elif kind == "mirror":
-        model.add(under, kind, name, [], dice.colour(0.4, 0.95))
+        # What is seen in the place of the mirror, or void: sources are mirrored, nothing else is seen.
+        others = [m for m in model.materials[:-1] if m not in model.traits]
+        model.add(under, kind, name, dice.choice([[], [], [dice.choice([*others, "void"])]]), dice.colour(0.4, 0.95))
     elif kind in ("prism1", "prism2"):
         model.traits.add(name)
         expressions = [w for _ in range(1 if kind == "prism1" else 2) for w in [within(dice, model.ray, 0.2, 0.8, 1), *bent(dice)]]
@@ -112,17 +114,30 @@ def helper_definitions():
     return HELPERS
 
 
+def mixed(dice, model, kinds, spectra, depth):
+    """A mixture of two materials, or of mixtures of such."""
+    one = lambda: mixed(dice, model, kinds, spectra, depth - 1) if depth and dice.chance(0.6) else material(dice, model, chain(dice, model, spectra), kinds)
+    sides = [one(), one()]
+    return mixture(dice, model, *dice.choice([sides, sides, [sides[0], "void"], ["void", sides[0]]]))
+
+
 def modifier(dice, model, kinds=None, spectra=False):
     """Something to put surfaces under: a material with what is above and below it, or a mixture of two."""
     if dice.chance(0.15):
-        sides = [material(dice, model, chain(dice, model, spectra), kinds) for _ in range(2)]
         model.traits.add("mixed")
-        return mixture(dice, model, *dice.choice([sides, sides, [sides[0], "void"], ["void", sides[0]]]))
+        return mixed(dice, model, kinds, spectra, dice.choice([0, 0, 1, 2]))
     made = material(dice, model, chain(dice, model, spectra), kinds)
     if dice.chance(0.1):
         name = model.name("a")
         model.parts.append(f"\n{dice.choice(['inherit', 'void'])} alias {name} {made}\n")
-        made = name
+        made = covered(model, made, name)
     if dice.chance(0.2):
-        made = dice.choice([pattern, texture])(dice, model, made)
+        made = covered(model, made, dice.choice([pattern, texture])(dice, model, made))
     return made
+
+
+def covered(model, under, name):
+    """What stands for a material shares its traits."""
+    if under in model.traits:
+        model.traits.add(name)
+    return name

@@ -40,16 +40,18 @@ def pattern(dice, model, under="void", kinds=None):
 
 def spectral(dice, model, under="void"):
     """A pattern that depends on the wavelength."""
-    kind = dice.choice(["spectrum", "spectrum", "specfile", "specdata"])
+    kind = dice.choice(["spectrum", "spectrum", "specfile", "specdata", "specpict"])
     name = model.name("s")
     # Where samples lie 200 nm apart Radiance takes them from beyond their array.
-    low, high = dice.choice([(380, 780), (400, 700), (780, 380), (300, 900), (450, 600)])
+    low, high = dice.choice([(380, 780), (400, 700), (780, 380), (300, 900), (450, 600), (0, 900)])
     if kind == "spectrum":
         model.add(under, kind, name, [], [low, high, *dice.reals(dice.randint(6, 24), 0.1, 1)])
     elif kind == "specfile":
         count = dice.choice([6, 9, 41, 81])
         file = model.file("dat", f"1\n{low} {high} {count}\n" + "\n".join(text([v]) for v in dice.reals(count, 0.1, 1)) + "\n")
         model.add(under, kind, name, [file])
+    elif kind == "specpict":
+        model.add(under, kind, name, ["noop", spectral_picture(dice, model, low, high), model.helpers(), *place(dice, model), *dice.transform()])
     else:
         count = dice.choice([6, 9, 41])
         values = dice.reals(3 * count, 0.1, 1)
@@ -120,9 +122,18 @@ def picture(dice, model):
     return model.file("hdr", head + pixels)
 
 
+def spectral_picture(dice, model, low, high):
+    """A small picture of spectra; of the wavelengths only the ends count."""
+    width, height, count = dice.randint(1, 5), dice.randint(1, 5), dice.choice([6, 9, 20])
+    low, high = max(low, high), max(min(low, high), 1)
+    head = f"#?RADIANCE\nNCOMP={count}\nWAVELENGTH_SPLITS= {low} 588 480 {high}\nFORMAT=Radiance_spectra\n\n-Y {height} +X {width}\n".encode()
+    pixels = b"".join(bytes([*(dice.randint(10, 255) for _ in range(count)), 128]) for _ in range(width * height))
+    return model.file("hsr", head + pixels)
+
+
 def place(dice, model):
-    """Expressions of the coordinates within a picture."""
-    return dice.choice([["frac(Px)", "frac(Py)"], ["U", "V"], [within(dice, model.places(), -0.2, 1.2) for _ in range(2)]])
+    """Expressions of the coordinates within a picture; U and V follow from the normal."""
+    return dice.choice([["frac(Px)", "frac(Py)"], ["U", "V"] if "Nx" in model.ray else ["Dx", "Dy"], [within(dice, model.places(), -0.2, 1.2) for _ in range(2)]])
 
 
 def lines(dice, model):

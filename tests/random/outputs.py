@@ -76,6 +76,11 @@ def picture(ours, theirs):
     return found + compare_pixels(a, b)
 
 
+def pixels(data):
+    """The pixels of a picture in a file."""
+    return _pixels(data, split(data)[1])
+
+
 def _pixels(data, at):
     end = data.index(b"\n", at) + 1
     _, height, _, width = data[at:end].split()
@@ -197,7 +202,7 @@ class Values:
         if len(a) != len(b):
             return False
         a, b = np.array(a), np.array(b)
-        if not np.isfinite(b).all():
+        if not a.size or not np.isfinite(b).all():
             return True
         scale = max(np.abs(b).max(), np.abs(a).max(), 1e-30) if np.isfinite(a).all() else 1
         step = 1 / 64 if letter == "8" else self.tolerance

@@ -36,10 +36,7 @@ def candidates(case, found):
     """Cases that lack a part, the large parts first."""
     for at, step in enumerate(case.steps):
         if isinstance(step.look, Values) and step.look.rays and len(step.look.rays) > 1:
-            first = [d for d in found if "ray " in str(d)]
-            keep = [step.look.rays[int(str(d).split("ray ")[1].split(":")[0])] for d in first[:1]]
-            if keep:
-                yield _with(case, at, rays=keep)
+            yield from (_with(case, at, rays=rays) for rays in fewer(step.look, found))
     for name in [n for n in case.files if n.endswith(".rad")]:
         parts = case.files[name].split("\n\n")
         size = len(parts) // 2
@@ -55,7 +52,7 @@ def candidates(case, found):
             more = WITH.get(option, 0)
             if not more and word + 1 < len(step.words) and str(step.words[word + 1])[:1] in "0123456789.":
                 more = 1
-            if option.startswith("-") and not option[1:2].isdigit() and not option.startswith(KEPT):
+            if step.program in ("rpict", "rtrace", "oconv") and option.startswith("-") and not option[1:2].isdigit() and not option.startswith(KEPT):
                 yield _with(case, at, words=step.words[:word] + step.words[word + more + 1:])
             word += 1 + more
     for at in range(len(case.steps) - 1, -1, -1):
@@ -63,6 +60,17 @@ def candidates(case, found):
             smaller = copy.copy(case)
             smaller.steps = case.steps[:at] + case.steps[at + 1:]
             yield smaller
+
+
+def fewer(look, found):
+    """Parts of the rays: the first that differs, or, where a ray prints many lines, either half."""
+    first = next((d for d in found if "ray " in str(d)), None)
+    if look.tree or first is None:
+        half = len(look.rays) // 2
+        yield look.rays[:half]
+        yield look.rays[half:]
+    else:
+        yield [look.rays[int(str(first).split("ray ")[1].split(":")[0])]]
 
 
 def _with(case, at, files=None, rays=None, words=None):

@@ -3,7 +3,7 @@
 import math
 
 from expressions import RAY
-from modifiers import pattern, spectral
+from modifiers import mixture, pattern, spectral
 
 ANY = ["polygon", "polygon", "polygon", "sphere", "ring", "cylinder", "cone", "tube", "cup", "bubble"]
 
@@ -65,7 +65,11 @@ def light(dice, model, kinds=None, spectra=False):
     # Radiance leaves the normals of distant sources to chance.
     model.ray = [name for name in RAY if kind not in ("sun", "point") or name[0] != "N"]
     if dice.chance(0.2):
-        under = spectral(dice, model) if spectra else pattern(dice, model, "void", ["brightfunc", "colorfunc", "brightdata"])
+        for _ in range(dice.choice([1, 1, 2, 3])):
+            under = spectral(dice, model, under) if spectra else pattern(dice, model, under, ["brightfunc", "colorfunc", "brightdata"])
+        if not spectra and dice.chance(0.2):
+            other = pattern(dice, model, "void", ["brightfunc", "colorfunc"])
+            under = mixture(dice, model, *dice.choice([[under, other], [under, "void"], ["void", under]]))
     model.ray = RAY
     colour = [c * dice.choice([10, 100]) for c in dice.colour(0.3, 1)]
     name, shape = model.name("l"), model.name("lamp")

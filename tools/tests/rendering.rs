@@ -270,6 +270,21 @@ fn frames_that_exist_are_not_made_again() {
 }
 
 #[test]
+fn sequences_begin_with_what_pictures_share_and_need_a_view() {
+    let bench = Bench::new();
+    let none = bench.rpict("-w -S 1 -x 20 -y 20 scene.oct", b"VIEW= nothing\n");
+    let lines = "#?RADIANCE\noconv scene.rad\nrpict -w -S 1 -x 20 -y 20\nSOFTWARE= RADIANCE 6.0a\n";
+    assert_eq!((String::from_utf8_lossy(&masked(&none.stdout)).as_ref(), none.status.code()), (lines, Some(0)));
+    let two = bench.rpict("-w -S 1 -x 20 -y 20 scene.oct", b"VIEW= -vh 50\nVIEW= -vh 60\n").stdout;
+    let text = String::from_utf8_lossy(&two);
+    assert!(text.contains("\nFRAME=1\nVIEW= ") && text.contains("FRAME=2\nVIEW= "));
+    assert_eq!(text.matches("SOFTWARE=").count(), 1);
+    // What the views change must be one itself.
+    let line = "-w -S 1 -vh 0 -x 20 -y 20 scene.oct";
+    assert_eq!(bench.rpict(line, b"VIEW= -vh 50\n").status.code(), Some(1));
+}
+
+#[test]
 fn single_pictures_have_number_0_and_empty_ones_no_distances() {
     let bench = Bench::new();
     assert!(bench.rpict("-w -x 20 -y 20 -o g%02d.hdr -z g%d.z scene.oct", b"").status.success());

@@ -53,7 +53,7 @@ fn trees_are_those_of_radiance() {
         assert!(equal, "{name}:\nours\n{}\nrecorded\n{}", ours.join("\n"), theirs.join("\n"));
         cases += 1;
     }
-    assert_eq!(cases, 29);
+    assert_eq!(cases, 30);
 }
 
 /// A closed white box with a lamp in it.

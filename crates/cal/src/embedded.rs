@@ -10,6 +10,8 @@ pub const EMBEDDED: &[(&str, &str)] = &[
     ("skybright.cal", include_str!("../lib/skybright.cal")),
     ("source.cal", include_str!("../lib/source.cal")),
     ("surf.cal", include_str!("../lib/surf.cal")),
+    ("tilt.cal", include_str!("../lib/tilt.cal")),
+    ("tmesh.cal", include_str!("../lib/tmesh.cal")),
 ];
 
 /// The text of a library file, by the name scenes use.

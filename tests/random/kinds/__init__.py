@@ -1,5 +1,6 @@
 """Kinds of cases: each a function from dice to a case."""
 
-from kinds import bsdf, function, mesh, oconv, rpict, rtrace, sampled, scene, xform
+from kinds import blur, bsdf, function, generated, instance, mesh, oconv, rpict, rtrace, sampled, scene, xform
 
-KINDS = {module.__name__.split(".")[-1]: module.make for module in (bsdf, function, mesh, oconv, rpict, rtrace, sampled, scene, xform)}
+MODULES = (blur, bsdf, function, generated, instance, mesh, oconv, rpict, rtrace, sampled, scene, xform)
+KINDS = {module.__name__.split(".")[-1]: module.make for module in MODULES}

@@ -99,7 +99,8 @@ def make(dice):
     options = [*EXACT, "-st", "1"] + (["-av", *dice.colour()] if dice.chance(0.5) else []) + (["-bv-"] if dice.chance(0.1) else [])
     seen = rays.at(dice, model, 120, 0.3)
     pack = rays.packer("a")
-    # Radiance keeps the colours of tables by 8 bits, and multiplies each cell by a factor of up to 1 ± 3e-4.
-    tolerance = 0.02 if any("CIE-X" in text for text in model.files.values() if isinstance(text, str)) else 0.002
+    # Radiance rounds the colours of matrices to steps of 1/410 in u' and v', up or down at random, which can change a channel by
+    # 4 %; and it multiplies each cell by a factor of up to 1 ± 3e-4.
+    tolerance = 0.04 if any("CIE-X" in text for text in model.files.values() if isinstance(text, str)) else 0.002
     trace = Step("rtrace", [*options, "-h", "-ovLs", "scene.oct"], "values", Values("vLs", "a", 3, seen, pack, tolerance=tolerance), pack(seen))
     return Case(model.all_files(), [Step("oconv", ["-w", "scene.rad"], "scene.oct", same, needed=True), trace])

@@ -25,7 +25,7 @@ def make(dice):
     if dice.chance(0.1):
         stdin = files["scene.rad"].encode()
         operands = ["-", *operands[1:]]
-    options = settings(dice)
+    options = settings(dice) + (refused(dice) if dice.chance(0.1) else [])
     steps.append(Step("oconv", [*options, *operands], "scene.oct", same, stdin, needed=True))
     if dice.chance(0.3):
         other = Model()
@@ -54,6 +54,12 @@ def settings(dice, box=True):
     if box and dice.chance(0.2):
         words += ["-b", *dice.choice([[-10, -10, -10, 20], [-7.3, -8, -6.5, 16], [-1, -1, -1, 2]])]
     return words
+
+
+def refused(dice):
+    """Options that are refused, or nearly."""
+    return dice.choice([["-q"], ["-n", 0], ["-n", -1], ["-r", 0], ["-r", -5], ["-r", 1.5], ["-b", 0, 0, 0, 0], ["-b", 0, 0, 0, -2], ["-i"],
+                        ["-i", "none.oct"], ["-i", "scene.rad"], ["-w", "-w"], ["-fw"], ["-f", "-f"], ["none.rad"], ["-b", -5, -5, -5, 10, "-b", -9, -9, -9, 18], ["-N", 3]])
 
 
 def clutter(dice):

@@ -44,7 +44,7 @@ pub(crate) struct Frame {
     pub(crate) distances: Option<String>,
     /// What is there already.
     pub(crate) recovered: Option<Recovered>,
-    /// False if other pictures come before it on the same stream.
+    /// False if what all pictures have in common stands on the stream already.
     pub(crate) first: bool,
 }
 
@@ -127,7 +127,7 @@ impl Picture<'_> {
         let Some(mut output) = PictureOutput::open(frame, done, empty)? else { return Ok(false) };
         let mut head = Vec::new();
         // Writing to memory does not fail.
-        let _ = self.header(frame, &scene.header, frame.first).write(&mut head);
+        let _ = self.header(frame, &scene.header).write(&mut head);
         let (columns, rows) = if empty { (0, 0) } else { (width, height) };
         head.extend_from_slice(resolution_line(columns, rows).as_bytes());
         output.head(&head)?;

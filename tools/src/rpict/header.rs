@@ -9,14 +9,17 @@ use ambit_file::{Header, Resolution};
 const SQUARE: f64 = 0.005;
 
 impl Picture<'_> {
-    /// The header of a frame. `first` is false for pictures that follow others on the same stream, which do not repeat
-    /// what is common to all.
-    pub(crate) fn header(&self, frame: &Frame, octree: &Header, first: bool) -> Header {
+    /// The lines that all pictures of a run have in common.
+    pub(crate) fn preamble(&self, octree: &Header) -> Header {
         let mut header = Header::empty();
-        if first {
-            header.extend(octree.lines_without_format());
-            header.extend(self.session.command_lines());
-        }
+        header.extend(octree.lines_without_format());
+        header.extend(self.session.command_lines());
+        header
+    }
+
+    /// The header of a frame, without the preamble if it stands on the stream already.
+    pub(crate) fn header(&self, frame: &Frame, octree: &Header) -> Header {
+        let mut header = if frame.first { self.preamble(octree) } else { Header::empty() };
         if let Some(number) = frame.number {
             header.push(format!("FRAME={number}"));
         }

@@ -68,8 +68,8 @@ fn run(session: &mut Session, words: Vec<String>) -> Result<(), Stop> {
     if !spectrum.shows_colour() {
         return Err(Failure::user("unsupported spectral sampling").into());
     }
-    if options.sequence <= 0 && options.recover.is_none() {
-        // A recovered picture brings its own view.
+    if options.sequence > 0 || options.recover.is_none() {
+        // A recovered picture brings its own view; in a sequence each line changes this one.
         options.view.set_up().map_err(|e| Failure::user(e.to_string()))?;
     }
     session.attach(&options.common)?;

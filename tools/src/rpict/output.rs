@@ -15,6 +15,13 @@ pub(crate) struct PictureOutput {
     distances: Option<File>,
 }
 
+/// Writes what comes before all pictures on standard output.
+pub(crate) fn begin(bytes: &[u8]) -> Result<(), Stop> {
+    let mut stream = StandardOutput::new();
+    let written = stream.write_all(bytes).and_then(|()| stream.flush());
+    written.map_err(|e| Stop::writing("error writing picture header", &e))
+}
+
 /// The longest scanline that is run-length encoded is part of the encoding; longer and shorter ones are written flat by
 /// [`encode_scanline`] itself.
 impl PictureOutput {

@@ -1,6 +1,7 @@
 //! Sequences of views from standard input (`-S`).
 
 use super::frame::{Frame, Picture, set_up};
+use super::output;
 use super::recover;
 use crate::light::Scene;
 use crate::session::Stop;
@@ -40,13 +41,23 @@ pub(crate) fn run(picture: &Picture<'_>, scene: &mut Scene<'_>, mut views: impl 
     let mut number = options.sequence;
     let mut previous = if number > 1 { options.view.set_up().ok() } else { None };
     let mut made = false;
+    if options.output.is_none() {
+        // Once for all pictures on the stream, and even if there is none.
+        let lines = picture
+            .preamble(&scene.header)
+            .lines()
+            .flat_map(|line| [line, b"\n".as_slice()])
+            .collect::<Vec<_>>()
+            .concat();
+        output::begin(&lines)?;
+    }
     while next_view(&mut views, &mut view, &picture.session.program)? {
         let projection = set_up(&view)?;
         let skipped = recovering.is_some_and(|k| number < k);
         if !skipped {
             let mut frame = plan(picture, projection, number, recovering == Some(number))?;
             frame.previous = previous.filter(|_| options.motion > 0.0);
-            frame.first = !made || frame.output.is_some();
+            frame.first = frame.output.is_some();
             made |= picture.make(&frame, scene)?;
         }
         previous = Some(projection);

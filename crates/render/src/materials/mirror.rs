@@ -38,7 +38,9 @@ impl<O: Observer> Walk<'_, O> {
             if self.tracer.scene.modifiers.opacity(id) == Opacity::Transparent {
                 return self.shade_with(ray, id, *bare);
             }
-        } else if ray.target.is_some() && relayed.is_none() {
+        }
+        // What looks for another source finds nothing here.
+        if ray.target.is_some() && relayed.is_none() {
             return true;
         }
         if ray.cosine() < 0.0 {

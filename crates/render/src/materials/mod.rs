@@ -100,7 +100,7 @@ impl Material {
             Self::Light(m) => m.blocks(),
             Self::Anisotropic(_) | Self::Ashikhmin(_) | Self::Function(_) | Self::Prism(_) => true,
             Self::Brtd(m) => !m.transmits,
-            Self::Wgmd(m) => !m.transmits,
+            Self::Wgmd(m) => back_visible && !m.transmits,
             _ => false,
         }
     }

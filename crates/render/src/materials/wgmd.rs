@@ -100,10 +100,11 @@ impl Wgmd {
 
 impl<O: Observer> Walk<'_, O> {
     pub(crate) fn wgmd(&mut self, ray: &mut Ray<'_>, m: &Wgmd, finish: Finish, bare: &Finish) -> bool {
+        // Shadow rays pass hidden sides, too, here unlike in plastic.
+        let Some(facing) = self.visible_side(ray, finish.tilt) else { return false };
         if ray.is_shadow() && !m.transmits {
             return true;
         }
-        let Some(facing) = self.visible_side(ray, finish.tilt) else { return false };
         ray.normal = ray.hit.as_ref().map_or(facing.normal, |hit| hit.normal);
         Self::note_normal(ray, bare.tilt);
         let mut reflection = self.wgmd_lobe(ray, m, REFLECTION, m.reflection, finish, bare);

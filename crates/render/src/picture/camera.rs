@@ -47,9 +47,10 @@ impl Camera {
         let x = (f64::from(pixel.x) + 0.5 + jx) / f64::from(self.width);
         let y = (f64::from(pixel.y) + 0.5 + jy) / f64::from(self.height);
         let mut ray = self.projection.ray(x, y)?;
-        if let Some(previous) = &self.previous {
+        // What was outside of the view before stands still.
+        if let Some(before) = self.previous.and_then(|previous| previous.ray(x, y)) {
             let u = self.lens.motion * (0.5 - random.child(SHUTTER).one());
-            ray = between(&ray, &previous.ray(x, y)?, u);
+            ray = between(&ray, &before, u);
         }
         if self.lens.aperture > EPSILON {
             ray = self.through_aperture(&ray, random.child(LENS));
@@ -108,4 +109,25 @@ fn between(a: &ViewRay, b: &ViewRay, at: f64) -> ViewRay {
     let length =
         if a.length >= FAR || b.length >= FAR { a.length.min(b.length) } else { a.length + (b.length - a.length) * at };
     ViewRay { origin: mix(a.origin, b.origin), direction, length }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ambit_file::{View, ViewType};
+
+    #[test]
+    fn what_comes_into_a_hemispherical_view_stands_still() {
+        // As in Radiance 6.0a: the corner was outside of the disk in the frame before.
+        let view = |wide: f64| View { kind: ViewType::Hemisphere, horizontal: wide, vertical: wide, ..View::default() };
+        let [now, before] = [60.0, 180.0].map(|wide| view(wide).set_up().expect("a view"));
+        let lens = Lens { jitter: 0.0, aperture: 0.0, motion: 1.0 };
+        let camera = Camera { projection: now, previous: Some(before), width: 9, height: 9, lens, seed: 0 };
+        assert_eq!(before.ray(0.5 / 9.0, 0.5 / 9.0), None);
+        let corner = camera.ray(PixelRequest { x: 0, y: 0, index: 5 }).expect("a ray");
+        let still = now.ray(0.5 / 9.0, 0.5 / 9.0).expect("a ray");
+        assert_eq!((corner.origin, corner.direction), (still.origin, still.direction));
+        let inner = camera.ray(PixelRequest { x: 3, y: 3, index: 5 }).expect("a ray");
+        assert_ne!(inner.direction, now.ray(3.5 / 9.0, 3.5 / 9.0).expect("a ray").direction);
+    }
 }

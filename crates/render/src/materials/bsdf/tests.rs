@@ -15,6 +15,16 @@ const OWN_BASIS: &str = "<AngleBasis><AngleBasisName>own</AngleBasisName>\
      </AngleBasisBlock><AngleBasisBlock><nPhis>4</nPhis><ThetaBounds><LowerTheta>30</LowerTheta>\
      <UpperTheta>90</UpperTheta></ThetaBounds></AngleBasisBlock></AngleBasis>";
 
+/// Keeps what is told.
+#[derive(Default)]
+struct Heard(Mutex<Vec<String>>);
+
+impl Notify for Heard {
+    fn warn(&self, text: &str) {
+        self.0.lock().expect("no panic before").push(text.to_owned());
+    }
+}
+
 fn block(wavelength: &str, direction: &str, bases: &str, numbers: &str) -> String {
     format!(
         "<WavelengthData>\n<Wavelength unit=\"Integral\">{wavelength}</Wavelength><WavelengthDataBlock>\
@@ -139,6 +149,20 @@ fn the_least_value_is_lambertian() {
 }
 
 #[test]
+fn what_no_direction_reaches_tells_nothing() {
+    // The first coordinate of rank 3 ends at a half. As Radiance 6.0a: .1254 is Lambertian here, not .0495, and the
+    // total of what lies beyond is not told.
+    let flat = "{ .1254 .1760 .2125 .2371 .9 .2490 .9 .0495 }";
+    let nested = "{ {.1254} {.0495} {.2125} {.9} {.2371} {.9} {.1760} {.9} }";
+    for text in [flat, nested] {
+        let heard = Heard::default();
+        let all = Distribution::read(tree(3, RB, text).as_bytes(), "test.xml", &heard).expect("a good file");
+        assert!((f64::from(all.reflection[0].diffuse.x) - 0.1254 * PI).abs() < 1e-6, "{text}");
+        assert!(heard.0.into_inner().expect("no panic before").is_empty(), "{text}");
+    }
+}
+
+#[test]
 fn a_side_without_lobe_has_the_other_ones() {
     let basis = "<AngleBasis>LBNL/Shirley-Chiu</AngleBasis>";
     let wavy = format!("{{ {} }}", numbers(16, |k| 0.1 + 0.01 * k as f64));
@@ -256,12 +280,6 @@ fn samples_follow_the_values_and_keep_the_energy() {
 
 #[test]
 fn more_light_than_there_is_gets_a_warning() {
-    struct Heard(Mutex<Vec<String>>);
-    impl Notify for Heard {
-        fn warn(&self, text: &str) {
-            self.0.lock().expect("no panic before").push(text.to_owned());
-        }
-    }
     let heard = Heard(Mutex::new(Vec::new()));
     let text = tree(4, RB, "{ 0.6 }");
     Distribution::read(text.as_bytes(), "dir/big.xml", &heard).expect("a good file");

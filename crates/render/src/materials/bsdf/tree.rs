@@ -8,6 +8,7 @@
 
 use super::tree_text::Problem;
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Coordinates are integers of this many bits, which bounds the depth.
 const BITS: u32 = 24;
@@ -108,21 +109,40 @@ impl Tree {
         }
     }
 
-    /// Takes the smallest value out if it makes a Lambertian part of a usual size; that value and its index.
+    /// Takes the smallest value out if it makes a Lambertian part of a usual size; that value and its index. What no
+    /// direction reaches becomes 0.
     pub(super) fn split(&mut self) -> (f32, usize) {
+        let mut reached = vec![false; self.values.len()];
+        // The first coordinate of rank 3 stays below a half.
+        self.each_reached(0, self.rank == 3, &mut |cells| reached[cells].fill(true));
         let (mut least, mut index) = (f32::INFINITY, 0);
         for (i, &v) in self.values.iter().enumerate() {
-            if v < least {
+            if reached[i] && v < least {
                 (least, index) = (v, i);
             }
         }
         if !super::lobe::is_diffuse(f64::from(least)) || f64::from(least) * PI >= MOST_DIFFUSE {
-            return (0.0, index);
+            least = 0.0;
         }
-        for v in &mut self.values {
-            *v -= least;
+        for (v, reached) in self.values.iter_mut().zip(reached) {
+            *v = if reached { *v - least } else { 0.0 };
         }
         (least, index)
+    }
+
+    /// Visits the values below a node, or of a `cut` node those of the lower half of its first dimension.
+    fn each_reached(&self, node: usize, cut: bool, visit: &mut impl FnMut(Range<usize>)) {
+        match self.nodes[node] {
+            Node::Grid { bits, first } => {
+                let cells = 1usize << (bits as usize * self.rank);
+                visit(first..first + if cut && bits > 0 { cells / 2 } else { cells });
+            }
+            Node::Branch { first } => {
+                for child in (0..1usize << self.rank).filter(|child| !cut || child & 1 == 0) {
+                    self.each_reached(first + child, false, visit);
+                }
+            }
+        }
     }
 
     /// Centre of the cell of a value.
