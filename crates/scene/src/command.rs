@@ -42,7 +42,7 @@ impl<'a> Commands<'a> {
     }
 
     /// Runs a command in a folder; so many others have asked for it, one after the other.
-    pub(crate) fn run_in(&self, command: &[u8], folder: &Path, depth: usize) -> io::Result<CommandOutput> {
+    pub(crate) fn run_in(self, command: &[u8], folder: &Path, depth: usize) -> io::Result<CommandOutput> {
         match xform::expand(command, folder, depth, self) {
             Some(text) => Ok(CommandOutput { text, success: true }),
             None => shell(command, folder),

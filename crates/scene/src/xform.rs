@@ -22,7 +22,7 @@ const DEEPEST: usize = 16;
 
 /// What a command prints, as scene text; `None` if it has to be run. Names of files, and the commands in them, are relative
 /// to `folder`.
-pub(crate) fn expand(command: &[u8], folder: &Path, depth: usize, commands: &Commands<'_>) -> Option<Vec<u8>> {
+pub(crate) fn expand(command: &[u8], folder: &Path, depth: usize, commands: Commands<'_>) -> Option<Vec<u8>> {
     if depth >= DEEPEST {
         return None;
     }
@@ -55,14 +55,15 @@ pub(crate) fn expand(command: &[u8], folder: &Path, depth: usize, commands: &Com
     Some(text)
 }
 
-/// Primitives of scene text, and of what its commands print.
+/// Primitives of scene text, and of what its commands print; `None` if that is nothing, which the program warns about.
 fn read(
     text: &[u8],
     folder: &Path,
     depth: usize,
-    commands: &Commands<'_>,
+    commands: Commands<'_>,
     primitives: &mut Vec<Primitive>,
 ) -> Option<()> {
+    let before = primitives.len();
     let mut lexer = Lexer::new(text);
     while let Some(byte) = lexer.skip_white() {
         match byte {
@@ -70,16 +71,12 @@ fn read(
             b'!' => {
                 let command = lexer.command();
                 let output = commands.run_in(&command[1..], folder, depth + 1).ok().filter(|o| o.success)?;
-                let before = primitives.len();
                 read(&output.text, folder, depth + 1, commands, primitives)?;
-                if primitives.len() == before {
-                    return None;
-                }
             }
             _ => primitives.push(Primitive::read(&mut lexer)?),
         }
     }
-    Some(())
+    (primitives.len() > before).then_some(())
 }
 
 /// A primitive where it is put.
@@ -88,7 +85,7 @@ fn print(primitive: &Primitive, request: &Request, placed: &Placed, text: &mut V
 }
 
 /// A file operand, which is searched for along RAYPATH, whose folders are relative to `folder`, too.
-fn find(name: &[u8], folder: &Path, commands: &Commands<'_>) -> Option<PathBuf> {
+fn find(name: &[u8], folder: &Path, commands: Commands<'_>) -> Option<PathBuf> {
     let path = Path::new(std::ffi::OsStr::from_bytes(name));
     let readable = |path: &PathBuf| path.is_file();
     match name.first()? {

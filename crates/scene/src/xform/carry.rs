@@ -68,8 +68,14 @@ pub(super) fn carried(primitive: &Primitive, request: &Request, placed: &Placed)
         // Those without the numbers of arguments above.
         kind if kind.class() == Class::Surface => return None,
         Kind::Glow | Kind::Spotlight | Kind::Dielectric | Kind::Interface if count == 0 => (),
-        Kind::Glow | Kind::Spotlight | Kind::Dielectric | Kind::Interface | Kind::Mist => return None,
-        Kind::BrightText | Kind::ColorText | Kind::MixText => return None,
+        Kind::Glow
+        | Kind::Spotlight
+        | Kind::Dielectric
+        | Kind::Interface
+        | Kind::Mist
+        | Kind::BrightText
+        | Kind::ColorText
+        | Kind::MixText => return None,
         _ => (),
     }
     if request.invert {
@@ -87,12 +93,16 @@ pub(super) fn carried(primitive: &Primitive, request: &Request, placed: &Placed)
 }
 
 fn lengthen(radii: &mut [f64], scale: f64) {
-    radii.iter_mut().for_each(|r| *r *= scale);
+    for radius in radii {
+        *radius *= scale;
+    }
 }
 
 /// Transmissions of a unit length that has become another.
 fn transmit(values: &mut [f64], scale: f64) {
-    values.iter_mut().for_each(|t| *t = t.powf(1.0 / scale));
+    for value in values {
+        *value = value.powf(1.0 / scale);
+    }
 }
 
 /// The anchor, the vector to the right and the one downwards.

@@ -5,6 +5,7 @@ use crate::lexer::Lexer;
 use crate::print::print_word;
 use crate::reader::arguments;
 use crate::{Class, Kind};
+use std::borrow::Cow;
 use std::io::Write;
 
 /// A primitive of scene text.
@@ -27,14 +28,14 @@ pub(super) const FEW_DECIMALS: usize = 5;
 impl Primitive {
     /// Reads one; `None` if it is malformed, or has words that mean trouble.
     pub(super) fn read(lexer: &mut Lexer<'_>) -> Option<Self> {
-        let mut word = || lexer.word().map(|w| w.into_owned()).filter(|w| is_simple(w));
+        let mut word = || lexer.word().map(Cow::into_owned).filter(|w| is_simple(w));
         let (modifier, kind, name) = (word()?, Kind::from_name(&word()?)?, word()?);
         let (strings, reals) = if kind == Kind::Alias {
             (vec![word()?], Vec::new())
         } else {
             let mut reals = Vec::new();
             let strings = arguments(lexer, &mut reals)?;
-            (strings.into_iter().map(|w| w.into_owned()).collect(), reals)
+            (strings.into_iter().map(Cow::into_owned).collect(), reals)
         };
         Some(Self { modifier, kind, name, strings, reals, decimals: DECIMALS })
     }

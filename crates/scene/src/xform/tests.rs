@@ -38,7 +38,7 @@ n instance q.in 13 foo.oct -rx 90 -i 1 -s -2 -rz 30 -t 1 2 3 0 0
 /// A command's text, or that it has to be run, in a folder along no other path.
 fn expanded(command: &str, folder: &Path) -> Option<String> {
     let search = SearchPath::new(Some("."), None, Library::NONE);
-    let text = expand(command.as_bytes(), folder, 0, &Commands::new(&search))?;
+    let text = expand(command.as_bytes(), folder, 0, Commands::new(&search))?;
     Some(String::from_utf8(text).unwrap())
 }
 
@@ -68,11 +68,11 @@ fn arrays_are_numbered_and_run_commands_once() {
     write(folder.path().join("part/a.rad"), inner).unwrap();
     write(folder.path().join("part/s.rad"), "m sphere s 0 0 4 0 0 0 1\n").unwrap();
     let text = expanded("xform -t 5 0 0 -a 2 -t 1 0 0 -a 2 -t 0 1 0 -i 1 -s 2 part/a.rad", folder.path()).unwrap();
-    let mut expected = String::new();
-    for (name, x, y) in [("a0.0", 10, 0), ("a0.1", 10, 2), ("a1.0", 12, 0), ("a1.1", 12, 2)] {
-        expected += "void alias m void\n";
-        expected += &format!("m sphere {name}.s 0 0 4 {x} {y} 0 2\nm sphere {name}.in.s 0 0 4 {x} {y} 2 2\n");
-    }
+    let expected = [("a0.0", 10, 0), ("a0.1", 10, 2), ("a1.0", 12, 0), ("a1.1", 12, 2)].map(|(name, x, y)| {
+        let spheres = format!("m sphere {name}.s 0 0 4 {x} {y} 0 2 m sphere {name}.in.s 0 0 4 {x} {y} 2 2");
+        format!("void alias m void {spheres} ")
+    });
+    let expected = expected.concat();
     assert_eq!(words(&text), words(&expected));
     assert_eq!(read_to_string(folder.path().join("part/runs")).unwrap(), "run\n");
     // A name takes the place of the first array's letter; the words are those of each place.
@@ -94,6 +94,7 @@ fn what_is_wrong_or_unusual_is_left_to_the_program() {
         ("short.rad", "void sphere s 0 0 4 0 0\n"),
         ("quote.rad", "void sphere \"s'\" 0 0 4 0 0 0 1\n"),
         ("huge.rad", "void sphere s 0 0 4 1e308 0 0 1\n"),
+        ("nothing.rad", "# no word\n"),
         ("empty.rad", "!true\n"),
         ("fails.rad", "!cat a.rad; false\n"),
     ] {
@@ -108,6 +109,7 @@ fn what_is_wrong_or_unusual_is_left_to_the_program() {
         "short.rad",
         "quote.rad",
         "-s 100 huge.rad",
+        "a.rad nothing.rad",
         "empty.rad",
         "fails.rad",
         "",
