@@ -28,22 +28,35 @@ pub(crate) fn expand(command: &[u8], folder: &Path, depth: usize, commands: Comm
     }
     let pipe = words::split(command)?;
     let request = Request::parse(pipe.words)?;
-    let mut primitives = Vec::new();
+    let mut texts = Vec::new();
     match pipe.before {
         Some(before) if request.files.is_empty() => {
             // As in a shell, only the last program's status counts.
             let output = commands.run_in(before, folder, depth + 1).ok()?;
-            read(&output.text, folder, depth, commands, &mut primitives)?;
+            texts.push((output.text, folder.to_owned()));
         }
         None if !request.files.is_empty() => {
             for file in &request.files {
                 let path = find(file, folder, commands)?;
-                let bytes = std::fs::read(&path).ok()?;
-                let within = path.parent().unwrap_or(Path::new(""));
-                read(&bytes, within, depth, commands, &mut primitives)?;
+                texts.push((std::fs::read(&path).ok()?, path.parent().unwrap_or(Path::new("")).to_owned()));
             }
         }
         _ => return None,
+    }
+    // All is looked at before any command in it is run, since the program runs them, too, if it has to be called.
+    let first = request.places().next()??;
+    let mut items = Vec::new();
+    for (text, within) in &texts {
+        items.push((read(text)?, within));
+    }
+    for primitive in items.iter().flat_map(|(items, _)| items) {
+        if let Item::Primitive(primitive) = primitive {
+            carry::carried(primitive, &request, &first)?;
+        }
+    }
+    let mut primitives = Vec::new();
+    for (items, within) in items {
+        gather(items, within, depth + 1, commands, &mut primitives)?;
     }
     let mut text = Vec::new();
     for placed in request.places() {
@@ -55,25 +68,43 @@ pub(crate) fn expand(command: &[u8], folder: &Path, depth: usize, commands: Comm
     Some(text)
 }
 
-/// Primitives of scene text, and of what its commands print; `None` if that is nothing, which the program warns about.
-fn read(
-    text: &[u8],
+/// What scene text consists of.
+enum Item {
+    Primitive(Primitive),
+    /// Without its `!`.
+    Command(Vec<u8>),
+}
+
+/// What a text consists of; `None` if it is malformed.
+fn read(text: &[u8]) -> Option<Vec<Item>> {
+    let mut lexer = Lexer::new(text);
+    let mut items = Vec::new();
+    while let Some(byte) = lexer.skip_white() {
+        match byte {
+            b'#' => lexer.skip_comment(),
+            b'!' => items.push(Item::Command(lexer.command().split_off(1))),
+            _ => items.push(Item::Primitive(Primitive::read(&mut lexer)?)),
+        }
+    }
+    Some(items)
+}
+
+/// The primitives of a text, and of what its commands print; `None` if that is nothing, which the program warns about.
+fn gather(
+    items: Vec<Item>,
     folder: &Path,
     depth: usize,
     commands: Commands<'_>,
     primitives: &mut Vec<Primitive>,
 ) -> Option<()> {
     let before = primitives.len();
-    let mut lexer = Lexer::new(text);
-    while let Some(byte) = lexer.skip_white() {
-        match byte {
-            b'#' => lexer.skip_comment(),
-            b'!' => {
-                let command = lexer.command();
-                let output = commands.run_in(&command[1..], folder, depth + 1).ok().filter(|o| o.success)?;
-                read(&output.text, folder, depth + 1, commands, primitives)?;
+    for item in items {
+        match item {
+            Item::Primitive(primitive) => primitives.push(primitive),
+            Item::Command(command) => {
+                let output = commands.run_in(&command, folder, depth).ok().filter(|o| o.success)?;
+                gather(read(&output.text)?, folder, depth + 1, commands, primitives)?;
             }
-            _ => primitives.push(Primitive::read(&mut lexer)?),
         }
     }
     (primitives.len() > before).then_some(())
@@ -87,12 +118,14 @@ fn print(primitive: &Primitive, request: &Request, placed: &Placed, text: &mut V
 /// A file operand, which is searched for along RAYPATH, whose folders are relative to `folder`, too.
 fn find(name: &[u8], folder: &Path, commands: Commands<'_>) -> Option<PathBuf> {
     let path = Path::new(std::ffi::OsStr::from_bytes(name));
-    let readable = |path: &PathBuf| path.is_file();
-    match name.first()? {
+    let readable = |path: &PathBuf| std::fs::File::open(path).is_ok();
+    let found = match name.first()? {
         b'~' | b'-' => None,
         b'/' | b'.' => Some(folder.join(path)).filter(readable),
         _ => commands.search.directories().iter().map(|d| folder.join(d).join(path)).find(readable),
-    }
+    };
+    // The first that can be read is taken, a folder, too.
+    found.filter(|path| path.is_file())
 }
 
 #[cfg(test)]

@@ -146,7 +146,8 @@ impl<R: Awaited> RayReader<R> {
         let start = buffer.iter().position(|&b| !is_space(b))?;
         let (number, length) = short_decimal(&buffer[start..])?;
         let end = start + length;
-        let whole = length <= LONGEST_WORD && buffer.get(end).is_some_and(|&b| is_space(b));
+        // It is shorter than words may be.
+        let whole = buffer.get(end).is_some_and(|&b| is_space(b));
         whole.then(|| self.input.consume(end)).map(|()| number)
     }
 

@@ -13,7 +13,8 @@ pub(super) fn carried(primitive: &Primitive, request: &Request, placed: &Placed)
     let point = |at: &mut [f64]| at.copy_from_slice(&transform.point(DVec3::from_slice(at)).to_array());
     let vector = |at: &mut [f64]| at.copy_from_slice(&transform.vector(DVec3::from_slice(at)).to_array());
     let count = p.reals.len();
-    if p.kind.class() == Class::Surface && !p.strings.is_empty() {
+    let bare = matches!(p.kind, Kind::Glow | Kind::Spotlight | Kind::Dielectric | Kind::Interface);
+    if (bare || p.kind.class() == Class::Surface) && !p.strings.is_empty() {
         return None;
     }
     let reals = &mut p.reals[..];
@@ -56,7 +57,7 @@ pub(super) fn carried(primitive: &Primitive, request: &Request, placed: &Placed)
             transmit(&mut reals[4..7], scale);
             p.decimals = FEW_DECIMALS;
         }
-        Kind::Mist if count <= 7 => {
+        Kind::Mist if count == 0 || (3..=7).contains(&count) => {
             reals.iter_mut().take(3).for_each(|x| *x /= scale);
             p.decimals = FEW_DECIMALS;
             if let Some(name) = &placed.name {
@@ -67,7 +68,6 @@ pub(super) fn carried(primitive: &Primitive, request: &Request, placed: &Placed)
         kind if kind.arguments().transform => append(&mut p.strings, &placed.words),
         // Those without the numbers of arguments above.
         kind if kind.class() == Class::Surface => return None,
-        Kind::Glow | Kind::Spotlight | Kind::Dielectric | Kind::Interface if count == 0 => (),
         Kind::Glow
         | Kind::Spotlight
         | Kind::Dielectric

@@ -72,6 +72,8 @@ impl Primitive {
 }
 
 /// True for words that come out of `xform` as they went in.
-fn is_simple(word: &[u8]) -> bool {
-    !word.is_empty() && !word.iter().any(|&b| is_white(b) && b != b' ' || matches!(b, b'"' | b'\''))
+pub(super) fn is_simple(word: &[u8]) -> bool {
+    !word.is_empty()
+        && !matches!(word[0], b'#' | b'!')
+        && !word.iter().any(|&b| is_white(b) && b != b' ' || matches!(b, b'"' | b'\''))
 }

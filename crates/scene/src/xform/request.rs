@@ -1,11 +1,14 @@
 //! What the words of an `xform` command ask for.
 
+use super::primitive::is_simple;
 use crate::grammar::integer;
 use ambit_base::Transform;
 use ambit_file::text_of;
 
 /// Arrays within arrays, beyond which a command is left to the program.
 const MOST_ARRAYS: usize = 16;
+/// Digits that always fit 32 bits.
+const MOST_DIGITS: usize = 9;
 
 /// An `xform` command.
 pub(super) struct Request {
@@ -16,7 +19,7 @@ pub(super) struct Request {
     /// Surfaces face the other way (`-I`).
     pub(super) invert: bool,
     pub(super) files: Vec<Vec<u8>>,
-    /// The transform; in places of `counts` stands `-i 0`.
+    /// The transform, which has `-i 0` in place of each array.
     transform: Vec<Vec<u8>>,
     /// For each array (`-a`), where its count stands in the transform, and how many places it has.
     arrays: Vec<(usize, i32)>,
@@ -42,11 +45,11 @@ impl Request {
             match word[1] {
                 b'n' => {
                     names += 1;
-                    let name = words.next()?;
+                    let name = words.next().filter(|w| is_simple(w))?;
                     request.name = Some(joined(request.name.take(), &name));
                 }
                 b'm' => {
-                    let modifier = words.next()?;
+                    let modifier = words.next().filter(|w| is_simple(w))?;
                     request.modifier.get_or_insert(modifier);
                 }
                 b'I' => request.invert = !request.invert,
@@ -67,6 +70,10 @@ impl Request {
                 b"-t" => 3,
                 _ => return None,
             };
+            // Counts beyond 32 bits are wrapped.
+            if word == b"-i" && words.peek()?.len() > MOST_DIGITS {
+                return None;
+            }
             request.transform.push(word);
             for _ in 0..numbers {
                 request.transform.push(words.next()?);

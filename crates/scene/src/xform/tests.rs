@@ -94,6 +94,10 @@ fn what_is_wrong_or_unusual_is_left_to_the_program() {
         ("short.rad", "void sphere s 0 0 4 0 0\n"),
         ("quote.rad", "void sphere \"s'\" 0 0 4 0 0 0 1\n"),
         ("huge.rad", "void sphere s 0 0 4 1e308 0 0 1\n"),
+        ("glow.rad", "void glow g 0 0 0\n"),
+        ("lamp.rad", "void glow g 1 x 0 4 1 1 1 1\n"),
+        ("mist.rad", "void mist m 0 0 2 1 1\n"),
+        ("late.rad", "!echo ran >> ran\nvoid sphere \"s'\" 0 0 4 0 0 0 1\n"),
         ("nothing.rad", "# no word\n"),
         ("empty.rad", "!true\n"),
         ("fails.rad", "!cat a.rad; false\n"),
@@ -110,6 +114,13 @@ fn what_is_wrong_or_unusual_is_left_to_the_program() {
         "quote.rad",
         "-s 100 huge.rad",
         "a.rad nothing.rad",
+        "glow.rad",
+        "lamp.rad",
+        "mist.rad",
+        "late.rad",
+        "-n '\"' a.rad",
+        "-m '#a' a.rad",
+        "-i 4294967298 -t 1 0 0 a.rad",
         "empty.rad",
         "fails.rad",
         "",
@@ -126,5 +137,6 @@ fn what_is_wrong_or_unusual_is_left_to_the_program() {
     ] {
         assert_eq!(expanded(&format!("xform {words}"), folder.path()), None, "{words}");
     }
+    assert!(!folder.path().join("ran").exists(), "the program would run it again");
     assert_eq!(expanded("cat a.rad | xform a.rad", folder.path()), None);
 }

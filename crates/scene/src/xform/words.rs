@@ -54,7 +54,9 @@ pub(super) fn split(command: &[u8]) -> Option<Pipe<'_>> {
         }
     }
     words.extend(word);
-    (plain && words.first().is_some_and(|w| w == b"xform")).then_some(Pipe { before, words })
+    let silent =
+        before.is_some_and(|before| before.trim_ascii_end().is_empty() || before.trim_ascii_end().ends_with(b"|"));
+    (plain && !silent && words.first().is_some_and(|w| w == b"xform")).then_some(Pipe { before, words })
 }
 
 #[cfg(test)]
@@ -105,6 +107,8 @@ mod tests {
             "X=1 xform a",
             "/bin/xform a",
             "xform a | grep b",
+            "| xform a",
+            "a | | xform b",
             "xform a\nxform b",
         ] {
             assert_eq!(parts(command), None, "{command}");
