@@ -54,7 +54,7 @@ impl Transform {
         while let Some(word) = w.next() {
             let bad = || TransformError { word: word.to_owned() };
             if word == "-i" {
-                total = total.then(&block.repeated(count));
+                total = block.repeated(count, total);
                 block = Self::IDENTITY;
                 count = w.next().and_then(integer).ok_or_else(bad)?;
                 continue;
@@ -79,7 +79,7 @@ impl Transform {
             };
             block = block.then(&step);
         }
-        Ok(total.then(&block.repeated(count)))
+        Ok(block.repeated(count, total))
     }
 
     /// A shift by `d` scene units.
@@ -123,14 +123,14 @@ impl Transform {
         }
     }
 
-    /// This transform `count` times over; nothing for counts below 1. Counts that scenes use are composed one by one, so
-    /// that rounding is Radiance's; absurd ones by squaring, so that they end.
-    fn repeated(&self, count: i64) -> Self {
+    /// `first`, then this transform `count` times over; nothing for counts below 1. Counts that scenes use are composed one
+    /// by one, so that rounding is Radiance's; absurd ones by squaring, so that they end.
+    fn repeated(&self, count: i64, first: Self) -> Self {
         const ONE_BY_ONE: i64 = 4096;
         if count <= ONE_BY_ONE {
-            return (0..count).fold(Self::IDENTITY, |t, _| t.then(self));
+            return (0..count).fold(first, |t, _| t.then(self));
         }
-        let (mut total, mut power, mut left) = (Self::IDENTITY, *self, count);
+        let (mut total, mut power, mut left) = (first, *self, count);
         while left > 0 {
             if left & 1 != 0 {
                 total = total.then(&power);
@@ -218,6 +218,13 @@ mod tests {
             let p = apply(text);
             assert!((p - DVec3::from(expected)).length() < 1e-12, "{text}: {p}");
         }
+    }
+
+    #[test]
+    fn repeated_blocks_are_rounded_as_radiance_rounds_them() {
+        // What its xform prints: three turns by 30° after a scaling leave this of a zero.
+        let t = Transform::parse(&["-s", ".0254", "-i", "3", "-ry", "30"]).unwrap();
+        assert_eq!(format!("{:.11e}", t.point(DVec3::X).x), "6.93889390391e-18");
     }
 
     #[test]
