@@ -12,3 +12,5 @@ mod session;
 mod spectral;
 mod statistics;
 mod threads;
+
+pub use session::search_path;

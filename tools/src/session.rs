@@ -122,10 +122,15 @@ pub(crate) fn split(mut arguments: impl Iterator<Item = OsString>) -> (String, V
     (program, arguments.map(text).collect())
 }
 
+/// Where auxiliary files are, as the environment says.
+pub fn search_path() -> SearchPath {
+    SearchPath::new(variable("RAYPATH").as_deref(), variable("HOME").as_deref(), Library::NONE)
+}
+
 impl Session {
     /// A session that knows nothing but its name.
     pub(crate) fn new(program: String, reports: bool) -> Self {
-        let search = SearchPath::new(variable("RAYPATH").as_deref(), variable("HOME").as_deref(), Library::NONE);
+        let search = search_path();
         let meter = Meter { progress: Progress::start(&program), rays: AtomicU64::new(0), percent: AtomicU64::new(0) };
         let mut session = Self {
             messages: ConsoleMessages { program: program.clone(), warnings: true },

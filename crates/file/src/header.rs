@@ -163,11 +163,17 @@ impl Header {
 
     /// Writes the lines and the empty line.
     pub fn write(&self, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
+        self.write_lines(out)?;
+        out.write_all(b"\n")
+    }
+
+    /// Writes the lines alone: the beginning of a header that goes on.
+    pub fn write_lines(&self, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
         for line in &self.lines {
             out.write_all(line)?;
             out.write_all(b"\n")?;
         }
-        out.write_all(b"\n")
+        Ok(())
     }
 
     /// Length of what [`Header::write`] writes, less the empty line: where a line pushed next would start.

@@ -56,22 +56,20 @@ impl SearchPath {
         Self { directories: path.split(':').map(path_of).collect(), home: home.map(path_of), library }
     }
 
-    /// The directories in order; an empty one is the working directory.
-    pub fn directories(&self) -> &[PathBuf] {
-        &self.directories
-    }
-
     /// The first place that has the file and lets it be read. (A directory of that name counts, as it does for other
     /// programs; reading it fails.)
     pub fn find(&self, name: &str) -> Option<Found> {
+        let on_disk = self.find_from(Path::new(""), name).map(Found::Path);
+        on_disk.or_else(|| self.direct(name).is_none().then(|| (self.library.0)(name)).flatten().map(Found::Embedded))
+    }
+
+    /// As [`SearchPath::find`], on disk alone, for a program that works in `folder`.
+    pub fn find_from(&self, folder: &Path, name: &str) -> Option<PathBuf> {
         if let Some(path) = self.direct(name) {
-            return readable(&path).then_some(Found::Path(path));
+            return Some(folder.join(path)).filter(|path| readable(path));
         }
-        if name.is_empty() {
-            return None;
-        }
-        let on_disk = self.directories.iter().map(|d| d.join(path_of(name))).find(|path| readable(path));
-        on_disk.map(Found::Path).or_else(|| (self.library.0)(name).map(Found::Embedded))
+        let name = Some(path_of(name)).filter(|_| !name.is_empty())?;
+        self.directories.iter().map(|d| folder.join(d).join(&name)).find(|path| readable(path))
     }
 
     /// The place on disk alone, for files that must be opened by name.
@@ -140,7 +138,7 @@ mod tests {
         }
         let path = format!("{}:{}:", one.display(), two.display());
         let search = SearchPath::new(Some(&path), Some(one.to_str().unwrap()), Library::new(library));
-        assert_eq!(search.directories().len(), 2);
+        assert_eq!(search.directories.len(), 2);
         let text =
             |name: &str| search.read(name, "cannot find function file").map(|b| String::from_utf8(b.into()).unwrap());
         assert_eq!(text("a.cal").unwrap(), "two");
@@ -159,7 +157,7 @@ mod tests {
     fn empty_components_are_the_working_directory() {
         let directories = |path: Option<&str>| {
             let search = SearchPath::new(path, None, Library::NONE);
-            search.directories().iter().map(|d| d.to_str().unwrap().to_owned()).collect::<Vec<_>>()
+            search.directories.iter().map(|d| d.to_str().unwrap().to_owned()).collect::<Vec<_>>()
         };
         assert_eq!(directories(None), ["", "/usr/local/lib/ray"]);
         assert_eq!(directories(Some("a:")), ["a"]);
@@ -171,6 +169,19 @@ mod tests {
         let found = SearchPath::new(Some(":/no"), None, Library::NONE).find("Cargo.toml");
         assert_eq!(found, Some(Found::Path(PathBuf::from("Cargo.toml"))));
         assert_eq!(SearchPath::new(Some("/no"), None, Library::NONE).find("Cargo.toml"), None);
+    }
+
+    #[test]
+    fn relative_names_and_directories_are_those_of_the_folder() {
+        let folder = Path::new("src/picture");
+        let from =
+            |path: &str, name: &str| SearchPath::new(Some(path), None, Library::new(library)).find_from(folder, name);
+        assert_eq!(from(":/no", "mod.rs"), Some(folder.join("mod.rs")));
+        assert_eq!(from("/no:..", "search.rs"), Some(folder.join("../search.rs")));
+        assert_eq!(from("/no", "../search.rs"), Some(folder.join("../search.rs")));
+        for missing in ["search.rs", "Cargo.toml", "rayinit.cal", ""] {
+            assert_eq!(from(":/no", missing), None, "{missing}");
+        }
     }
 
     #[test]

@@ -222,6 +222,19 @@ impl Kind {
         KINDS[self as usize].2
     }
 
+    /// The same surface seen from the other side.
+    pub(crate) fn inside_out(self) -> Self {
+        match self {
+            Self::Sphere => Self::Bubble,
+            Self::Bubble => Self::Sphere,
+            Self::Cone => Self::Cup,
+            Self::Cup => Self::Cone,
+            Self::Cylinder => Self::Tube,
+            Self::Tube => Self::Cylinder,
+            other => other,
+        }
+    }
+
     /// True for everything that other primitives can name as their modifier.
     pub fn is_modifier(self) -> bool {
         !matches!(self.class(), Class::Surface | Class::Volume)

@@ -12,9 +12,9 @@ mod words;
 
 use crate::command::Commands;
 use crate::lexer::Lexer;
+use ambit_file::text_of;
 use primitive::Primitive;
 use request::{Placed, Request};
-use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 
 /// How deep files may name commands of files; deeper ones are left to the program.
@@ -115,15 +115,9 @@ fn print(primitive: &Primitive, request: &Request, placed: &Placed, text: &mut V
     carry::carried(primitive, request, placed)?.print(text)
 }
 
-/// A file operand, which is searched for along RAYPATH, whose folders are relative to `folder`, too.
+/// A file operand, which is searched for along RAYPATH; what looks like an option is none.
 fn find(name: &[u8], folder: &Path, commands: Commands<'_>) -> Option<PathBuf> {
-    let path = Path::new(std::ffi::OsStr::from_bytes(name));
-    let readable = |path: &PathBuf| std::fs::File::open(path).is_ok();
-    let found = match name.first()? {
-        b'~' | b'-' => None,
-        b'/' | b'.' => Some(folder.join(path)).filter(readable),
-        _ => commands.search.directories().iter().map(|d| folder.join(d).join(path)).find(readable),
-    };
+    let found = commands.search.find_from(folder, &text_of(name)).filter(|_| name.first() != Some(&b'-'));
     // The first that can be read is taken, a folder, too.
     found.filter(|path| path.is_file())
 }

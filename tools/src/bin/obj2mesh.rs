@@ -2,7 +2,7 @@
 
 use ambit_base::Notify;
 use ambit_cli::{Class, ConsoleMessages, Failure, VERSION};
-use ambit_file::{Header, Library, SearchPath, bytes_of, command_line, os_text, path_of, variable};
+use ambit_file::{Header, bytes_of, command_line, os_text, path_of};
 use ambit_octree::{Error, Limits, MESH_LIMITS, compile_mesh};
 use ambit_scene::{Commands, ErrorClass, Reader, Scene};
 use std::fs::File;
@@ -137,7 +137,7 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Failure> {
 
 fn materials(request: &Request, notify: &dyn Notify) -> Result<Scene, Failure> {
     let mut scene = Scene::new();
-    let search = SearchPath::new(variable("RAYPATH").as_deref(), variable("HOME").as_deref(), Library::NONE);
+    let search = ambit_tools::search_path();
     let mut commands = Commands::new(&search);
     let mut reader = Reader::new(&mut scene, notify, &mut commands);
     request.materials.iter().try_for_each(|file| reader.read(file)).map_err(|e| failure(&e.into()))?;

@@ -2,7 +2,7 @@
 
 use ambit_base::{DVec3, Location, Notify};
 use ambit_cli::{Class, ConsoleMessages, Failure, StandardOutput, VERSION, answer};
-use ambit_file::{Header, Library, SearchPath, bytes_of, command_line, path_of, variable, word_of};
+use ambit_file::{Header, bytes_of, command_line, path_of, word_of};
 use ambit_octree::{Cube, Error, Find, Limits, Objects, Prepared, Source, Tree};
 use ambit_scene::{Commands, ErrorClass, Reader, Scene};
 use std::fs::File;
@@ -183,7 +183,7 @@ fn run(program: &str, arguments: &[String]) -> Result<(), Stop> {
         }
     };
     let notify = ConsoleMessages { program: program.to_owned(), warnings: !request.quiet };
-    let search = SearchPath::new(variable("RAYPATH").as_deref(), variable("HOME").as_deref(), Library::NONE);
+    let search = ambit_tools::search_path();
     let find = |name: &str| search.find_path(name);
     let mut header = Header::empty();
     let octree = convert(&request, &mut header, &find, Commands::new(&search), &notify)?;

@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use crate::session::Stop;
 use ambit_cli::{Failure, StandardOutput};
-use ambit_file::{encode_pixel, encode_scanline, path_of};
+use ambit_file::{Header, encode_pixel, encode_scanline, path_of};
 use ambit_render::picture::Pixel;
 use rayon::prelude::*;
 use std::fs::{File, OpenOptions};
@@ -16,9 +16,9 @@ pub(crate) struct PictureOutput {
 }
 
 /// Writes what comes before all pictures on standard output.
-pub(crate) fn begin(bytes: &[u8]) -> Result<(), Stop> {
+pub(crate) fn begin(lines: &Header) -> Result<(), Stop> {
     let mut stream = StandardOutput::new();
-    let written = stream.write_all(bytes).and_then(|()| stream.flush());
+    let written = lines.write_lines(&mut stream).and_then(|()| stream.flush());
     written.map_err(|e| Stop::writing("error writing picture header", &e))
 }
 
@@ -64,32 +64,24 @@ impl PictureOutput {
 
     /// Writes scanlines of codes, from the top down.
     pub(crate) fn codes(&mut self, lines: &[Vec<[u8; 4]>]) -> Result<(), Stop> {
-        let mut bytes = Vec::new();
-        for line in lines {
+        let encoded = |line: &Vec<[u8; 4]>| {
+            let mut bytes = Vec::new();
             encode_scanline(line, &mut bytes);
-        }
-        self.write(&bytes)
+            bytes
+        };
+        let lines: Vec<Vec<u8>> = lines.par_iter().map(encoded).collect();
+        let written = self.picture.write_all(&lines.concat()).and_then(|()| self.picture.flush());
+        written.map_err(|e| Stop::writing("write error in render", &e))
     }
 
     /// Writes scanlines of pixels and their distances.
     pub(crate) fn pixels(&mut self, rows: &[Vec<Pixel>]) -> Result<(), Stop> {
-        let encoded = |row: &Vec<Pixel>| {
-            let codes: Vec<[u8; 4]> = row.iter().map(|pixel| encode_pixel(pixel.colour)).collect();
-            let mut bytes = Vec::new();
-            encode_scanline(&codes, &mut bytes);
-            bytes
-        };
-        let lines: Vec<Vec<u8>> = rows.par_iter().map(encoded).collect();
-        self.write(&lines.concat())?;
+        let codes = |row: &Vec<Pixel>| row.iter().map(|pixel| encode_pixel(pixel.colour)).collect();
+        self.codes(&rows.par_iter().map(codes).collect::<Vec<_>>())?;
         if let Some(file) = &mut self.distances {
             let distances: Vec<u8> = rows.iter().flatten().flat_map(|pixel| pixel.distance.to_ne_bytes()).collect();
             file.write_all(&distances).map_err(|e| Stop::writing("write error in render", &e))?;
         }
         Ok(())
-    }
-
-    fn write(&mut self, bytes: &[u8]) -> Result<(), Stop> {
-        let written = self.picture.write_all(bytes).and_then(|()| self.picture.flush());
-        written.map_err(|e| Stop::writing("write error in render", &e))
     }
 }

@@ -43,13 +43,7 @@ pub(crate) fn run(picture: &Picture<'_>, scene: &mut Scene<'_>, mut views: impl 
     let mut made = false;
     if options.output.is_none() {
         // Once for all pictures on the stream, and even if there is none.
-        let lines = picture
-            .preamble(&scene.header)
-            .lines()
-            .flat_map(|line| [line, b"\n".as_slice()])
-            .collect::<Vec<_>>()
-            .concat();
-        output::begin(&lines)?;
+        output::begin(&picture.preamble(&scene.header))?;
     }
     while next_view(&mut views, &mut view, &picture.session.program)? {
         let projection = set_up(&view)?;

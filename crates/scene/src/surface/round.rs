@@ -19,19 +19,6 @@ pub(super) fn is_round(kind: Kind) -> bool {
     matches!(kind, Kind::Sphere | Kind::Bubble | Kind::Cone | Kind::Cup | Kind::Cylinder | Kind::Tube | Kind::Ring)
 }
 
-/// The same surface seen from the other side.
-fn inside_out(kind: Kind) -> Kind {
-    match kind {
-        Kind::Sphere => Kind::Bubble,
-        Kind::Bubble => Kind::Sphere,
-        Kind::Cone => Kind::Cup,
-        Kind::Cup => Kind::Cone,
-        Kind::Cylinder => Kind::Tube,
-        Kind::Tube => Kind::Cylinder,
-        other => other,
-    }
-}
-
 /// −1, 0 or 1; lengths within [`EPSILON`] of zero have no sign.
 fn sign(x: f64) -> i32 {
     i32::from(x > EPSILON) - i32::from(x < -EPSILON)
@@ -71,7 +58,7 @@ impl Tidy {
 
     fn turn_inside_out(&mut self, complaint: Complaint) {
         self.complaints[0] = Some((self.kind, complaint));
-        self.kind = inside_out(self.kind);
+        self.kind = self.kind.inside_out();
     }
 
     fn ignore(&mut self, complaint: Complaint) {

@@ -79,7 +79,7 @@ pub(super) fn carried(primitive: &Primitive, request: &Request, placed: &Placed)
         _ => (),
     }
     if request.invert {
-        p.kind = inside_out(p.kind);
+        p.kind = p.kind.inside_out();
     }
     if p.is_surface() {
         if let Some(name) = &placed.name {
@@ -124,17 +124,4 @@ fn append(strings: &mut Vec<Vec<u8>>, words: &[Vec<u8>]) {
 fn relay(name: &[u8], path: &[u8]) -> Vec<u8> {
     let parts: Vec<Vec<u8>> = path.split(|&b| b == b'>').map(|part| joined(Some(name.to_vec()), part)).collect();
     parts.join(&b'>')
-}
-
-/// The type that faces the other way.
-fn inside_out(kind: Kind) -> Kind {
-    match kind {
-        Kind::Sphere => Kind::Bubble,
-        Kind::Bubble => Kind::Sphere,
-        Kind::Cone => Kind::Cup,
-        Kind::Cup => Kind::Cone,
-        Kind::Cylinder => Kind::Tube,
-        Kind::Tube => Kind::Cylinder,
-        other => other,
-    }
 }
