@@ -1,9 +1,9 @@
 //! Commands in scene text: `!genbox …` lines whose standard output is scene text.
 
-use crate::xform;
+use crate::xform::{self, Expansion};
 use ambit_file::SearchPath;
 use std::ffi::OsStr;
-use std::io;
+use std::io::{self, Write};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
@@ -41,29 +41,40 @@ impl<'a> Commands<'a> {
         Self { search }
     }
 
-    /// Runs a command in a folder; so many others have asked for it, one after the other.
-    pub(crate) fn run_in(self, command: &[u8], folder: &Path, depth: usize) -> io::Result<CommandOutput> {
-        match xform::expand(command, folder, depth, self) {
-            Some(text) => Ok(CommandOutput { text, success: true }),
-            None => shell(command, folder),
+    /// Runs a command that so many others have asked for, one after the other; names of files are relative to `folder`.
+    /// `None` if it was given up half-way, which those that asked for it have to tell.
+    pub(crate) fn run_in(self, command: &[u8], folder: &Path, depth: usize) -> io::Result<Option<CommandOutput>> {
+        match xform::expand(command, folder, depth, self)? {
+            Expansion::Done(output) => Ok(Some(output)),
+            Expansion::GivenUp if depth > 0 => Ok(None),
+            Expansion::GivenUp | Expansion::Untouched => shell(command, folder, None).map(Some),
         }
     }
 }
 
 impl Runner for Commands<'_> {
     fn run(&mut self, command: &[u8]) -> io::Result<CommandOutput> {
-        self.run_in(command, Path::new(""), 0)
+        Ok(self.run_in(command, Path::new(""), 0)?.unwrap_or_default())
     }
 }
 
-fn shell(command: &[u8], folder: &Path) -> io::Result<CommandOutput> {
+/// Has a shell run a command in a folder; it reads `input`, or what this program reads.
+pub(crate) fn shell(command: &[u8], folder: &Path, input: Option<&[u8]>) -> io::Result<CommandOutput> {
     let mut shell = Command::new("/bin/sh");
     shell.arg0("sh").arg("-c").arg(OsStr::from_bytes(command));
     if folder != "" {
         shell.current_dir(folder);
     }
-    let streams = shell.stdin(Stdio::inherit()).stderr(Stdio::inherit()).stdout(Stdio::piped());
-    let output = streams.spawn()?.wait_with_output()?;
+    let stdin = if input.is_some() { Stdio::piped() } else { Stdio::inherit() };
+    let mut child = shell.stdin(stdin).stderr(Stdio::inherit()).stdout(Stdio::piped()).spawn()?;
+    let pipe = child.stdin.take();
+    let output = std::thread::scope(|scope| {
+        if let (Some(mut pipe), Some(input)) = (pipe, input) {
+            // It need not read all.
+            scope.spawn(move || drop(pipe.write_all(input)));
+        }
+        child.wait_with_output()
+    })?;
     Ok(CommandOutput { text: output.stdout, success: output.status.success() })
 }
 

@@ -14,30 +14,32 @@ pub(super) fn carried(primitive: &Primitive, request: &Request, placed: &Placed)
     let vector = |at: &mut [f64]| at.copy_from_slice(&transform.vector(DVec3::from_slice(at)).to_array());
     let count = p.reals.len();
     let bare = matches!(p.kind, Kind::Glow | Kind::Spotlight | Kind::Dielectric | Kind::Interface);
-    if (bare || p.kind.class() == Class::Surface) && !p.strings.is_empty() {
+    let placed_by_reals = bare
+        || p.kind.class() == Class::Surface
+        || matches!(p.kind, Kind::Mist | Kind::BrightText | Kind::ColorText | Kind::MixText);
+    // A mist's extinction has three channels or none.
+    let odd =
+        placed_by_reals && !p.kind.arguments().reals.allows(count) || p.kind == Kind::Mist && matches!(count, 1 | 2);
+    if odd || (bare || p.kind.class() == Class::Surface) && !p.strings.is_empty() {
         return None;
     }
     let reals = &mut p.reals[..];
     match p.kind {
-        Kind::Polygon if count.is_multiple_of(3) => {
+        Kind::Polygon => {
             reals.chunks_exact_mut(3).for_each(point);
             if (transform.scale() < 0.0) != request.invert {
                 p.reals = p.reals.chunks_exact(3).rev().flatten().copied().collect();
             }
         }
-        Kind::Sphere | Kind::Bubble if count == 4 => {
+        Kind::Sphere | Kind::Bubble => {
             point(&mut reals[..3]);
             lengthen(&mut reals[3..], scale);
         }
-        Kind::Cone | Kind::Cup if count == 8 => {
+        Kind::Cone | Kind::Cup | Kind::Cylinder | Kind::Tube => {
             reals[..6].chunks_exact_mut(3).for_each(point);
             lengthen(&mut reals[6..], scale);
         }
-        Kind::Cylinder | Kind::Tube if count == 7 => {
-            reals[..6].chunks_exact_mut(3).for_each(point);
-            lengthen(&mut reals[6..], scale);
-        }
-        Kind::Ring if count == 8 => {
+        Kind::Ring => {
             point(&mut reals[..3]);
             vector(&mut reals[3..6]);
             if request.invert {
@@ -45,37 +47,31 @@ pub(super) fn carried(primitive: &Primitive, request: &Request, placed: &Placed)
             }
             lengthen(&mut reals[6..], scale);
         }
-        Kind::Source if count == 4 => vector(&mut reals[..3]),
-        Kind::Glow if count == 4 => reals[3] *= scale,
-        Kind::Spotlight if count == 7 => vector(&mut reals[4..]),
-        Kind::Dielectric if count == 5 => {
+        Kind::Source => vector(&mut reals[..3]),
+        Kind::Glow => reals[3] *= scale,
+        Kind::Spotlight => vector(&mut reals[4..]),
+        Kind::Dielectric => {
             transmit(&mut reals[..3], scale);
             p.decimals = FEW_DECIMALS;
         }
-        Kind::Interface if count == 8 => {
+        Kind::Interface => {
             transmit(&mut reals[..3], scale);
             transmit(&mut reals[4..7], scale);
             p.decimals = FEW_DECIMALS;
         }
-        Kind::Mist if count == 0 || (3..=7).contains(&count) => {
+        Kind::Mist => {
             reals.iter_mut().take(3).for_each(|x| *x /= scale);
             p.decimals = FEW_DECIMALS;
             if let Some(name) = &placed.name {
                 p.strings.iter_mut().for_each(|path| *path = relay(name, path));
             }
         }
-        Kind::BrightText | Kind::ColorText | Kind::MixText if count >= 9 => text_block(reals, point, vector),
+        Kind::BrightText | Kind::ColorText | Kind::MixText => {
+            // The anchor, the vector to the right and the one downwards.
+            point(&mut reals[..3]);
+            reals[3..9].chunks_exact_mut(3).for_each(vector);
+        }
         kind if kind.arguments().transform => append(&mut p.strings, &placed.words),
-        // Those without the numbers of arguments above.
-        kind if kind.class() == Class::Surface => return None,
-        Kind::Glow
-        | Kind::Spotlight
-        | Kind::Dielectric
-        | Kind::Interface
-        | Kind::Mist
-        | Kind::BrightText
-        | Kind::ColorText
-        | Kind::MixText => return None,
         _ => (),
     }
     if request.invert {
@@ -103,13 +99,6 @@ fn transmit(values: &mut [f64], scale: f64) {
     for value in values {
         *value = value.powf(1.0 / scale);
     }
-}
-
-/// The anchor, the vector to the right and the one downwards.
-fn text_block(reals: &mut [f64], point: impl Fn(&mut [f64]), vector: impl Fn(&mut [f64])) {
-    point(&mut reals[..3]);
-    vector(&mut reals[3..6]);
-    vector(&mut reals[6..9]);
 }
 
 /// Words of a transform after those that are there, as a block of their own.

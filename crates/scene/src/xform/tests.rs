@@ -13,6 +13,10 @@ g ring r 0 0 8 0 0 0 0 0 1 .5 1
 g cup c 0 0 8 0 0 0 0 0 1 .5 1
 void dielectric d 0 0 5 .9 .8 .7 1.523456789 0
 void brighttext t 2 f x 0 11 0 0 0 1 0 0 0 -1 0 1 .1
+void spotlight sp 0 0 7 10 20 30 45 0 1 -2
+void interface it 0 0 8 .9 .8 .7 1.5 .95 .85 .75 1.2
+g cylinder cy 0 0 7 0 0 0 0 0 1 .5
+g cone co 0 0 8 4 0 0 4 0 1 .5 .2
 # no word of the scene
 inherit alias i g
 g source sun 0 0 4 0 0 1 5
@@ -30,6 +34,10 @@ n ring q.r 0 0 8 1 2 3 -0 -0 2 1 2
 n cone q.c 0 0 8 1 2 3 1 2 1 1 2
 void dielectric d 0 0 5 0.948683 0.894427 0.83666 1.52346 0
 void brighttext t 2 f x 0 11 1 2 3 -1.73205080757 -1 0 -1 1.73205080757 0 1 0.1
+void spotlight sp 0 0 7 10 20 30 45 1 -1.73205080757 4
+void interface it 0 0 8 0.948683 0.894427 0.83666 1.5 0.974679 0.921954 0.866025 1.2
+n tube q.cy 0 0 7 1 2 3 1 2 1 1
+n cup q.co 0 0 8 -5.92820323028 -2 3 -5.92820323028 -2 1 1 0.4
 inherit alias i g
 n source q.sun 0 0 4 0 0 -2 5
 n instance q.in 13 foo.oct -rx 90 -i 1 -s -2 -rz 30 -t 1 2 3 0 0
@@ -38,8 +46,10 @@ n instance q.in 13 foo.oct -rx 90 -i 1 -s -2 -rz 30 -t 1 2 3 0 0
 /// A command's text, or that it has to be run, in a folder along no other path.
 fn expanded(command: &str, folder: &Path) -> Option<String> {
     let search = SearchPath::new(Some("."), None, Library::NONE);
-    let text = expand(command.as_bytes(), folder, 0, Commands::new(&search))?;
-    Some(String::from_utf8(text).unwrap())
+    match expand(command.as_bytes(), folder, 0, Commands::new(&search)).unwrap() {
+        Expansion::Done(output) => Some(String::from_utf8(output.text).unwrap()),
+        Expansion::Untouched | Expansion::GivenUp => None,
+    }
 }
 
 /// Words, numbers among them as what they are.
@@ -139,4 +149,24 @@ fn what_is_wrong_or_unusual_is_left_to_the_program() {
     }
     assert!(!folder.path().join("ran").exists(), "the program would run it again");
     assert_eq!(expanded("cat a.rad | xform a.rad", folder.path()), None);
+}
+
+#[test]
+fn what_comes_before_a_pipe_runs_once() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path().join("odd.rad"), "void sphere \"s'\" 0 0 4 0 0 0 1\n").unwrap();
+    // The program is called with what has been printed, whether there is one or not.
+    expanded("sh -c 'echo run >> runs; cat odd.rad' | xform -s 2", folder.path());
+    assert_eq!(read_to_string(folder.path().join("runs")).unwrap(), "run\n");
+}
+
+#[test]
+fn failures_far_below_are_told_once_more_only() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path().join("n0.rad"), "!echo run >> runs\n").unwrap();
+    for k in 1..6 {
+        write(folder.path().join(format!("n{k}.rad")), format!("!xform n{}.rad\n", k - 1)).unwrap();
+    }
+    assert_eq!(expanded("xform n5.rad", folder.path()), None);
+    assert_eq!(read_to_string(folder.path().join("runs")).unwrap(), "run\n");
 }

@@ -4,9 +4,15 @@
 pub(super) struct Pipe<'a> {
     /// What the last program reads, if that is what others print.
     pub(super) before: Option<&'a [u8]>,
-    /// The last program's words.
+    /// The last program's call, as it stands.
+    pub(super) last: &'a [u8],
+    /// Its words.
     pub(super) words: Vec<Vec<u8>>,
 }
+
+/// Words with which a shell begins something else than a program.
+const KEYWORDS: [&[u8]; 13] =
+    [b"case", b"do", b"done", b"elif", b"else", b"esac", b"fi", b"for", b"if", b"then", b"time", b"until", b"while"];
 
 /// Bytes that mean nothing to a shell, wherever they stand.
 fn is_plain(byte: u8) -> bool {
@@ -40,9 +46,12 @@ pub(super) fn split(command: &[u8]) -> Option<Pipe<'_>> {
             }
             // Two of them, or one with an ampersand, are something else.
             b'|' if !matches!(command.get(at), Some(b'|' | b'&')) => {
+                words.extend(word.take());
+                if words.first().is_none_or(|first: &Vec<u8>| KEYWORDS.contains(&&first[..])) {
+                    return None;
+                }
                 before = Some(&command[..at - 1]);
                 words.clear();
-                word = None;
                 plain = true;
             }
             b if is_plain(b) => word.get_or_insert_default().push(b),
@@ -54,9 +63,11 @@ pub(super) fn split(command: &[u8]) -> Option<Pipe<'_>> {
         }
     }
     words.extend(word);
-    let silent =
-        before.is_some_and(|before| before.trim_ascii_end().is_empty() || before.trim_ascii_end().ends_with(b"|"));
-    (plain && !silent && words.first().is_some_and(|w| w == b"xform")).then_some(Pipe { before, words })
+    (plain && words.first().is_some_and(|w| w == b"xform")).then(|| Pipe {
+        before,
+        last: &command[before.map_or(0, |b| b.len() + 1)..],
+        words,
+    })
 }
 
 #[cfg(test)]
@@ -109,6 +120,7 @@ mod tests {
             "xform a | grep b",
             "| xform a",
             "a | | xform b",
+            "if true | xform b",
             "xform a\nxform b",
         ] {
             assert_eq!(parts(command), None, "{command}");
