@@ -196,7 +196,7 @@ impl Light for Scene<'_> {
         seen.clear();
         seen.resize(rays.count(), Seen::default());
         for (place, answer) in places.into_iter().zip(answers) {
-            seen[place] = Seen { value: answer.value, length: answer.length as f32 };
+            seen[place] = Seen::from(&answer);
         }
         Ok(())
     }

@@ -344,3 +344,18 @@ fn bins_do_not_depend_on_threads_or_on_what_is_written() {
     // The red wall reflects long waves more than short ones, which all passes agree on.
     assert!(numbers(&bins).chunks(5).all(|b| b[1] > b[3]), "no wall is red");
 }
+
+#[test]
+fn pixels_outside_of_the_view_are_black_and_shift_nothing() {
+    let bench = Bench::new(SCENE);
+    // So narrow that scanlines are not encoded: four bytes a pixel, the last of black ones 0.
+    let line = "-w -vth -vp 0 0 1 -vd 0 0 -1 -vu 0 1 0 -vh 180 -vv 180 -x 7 -y 7 -ps 1 -pj 0";
+    let lit = |more: &str| -> Vec<bool> {
+        let (_, body) = split(&bench.rpict(&format!("{line} {more}")));
+        let pixels = &body[body.len() - 7 * 7 * 4..];
+        pixels.chunks(4).map(|pixel| pixel[3] > 0).collect()
+    };
+    let (three, nine) = (lit("-cs 3"), lit("-cs 9"));
+    assert_eq!(three, nine);
+    assert!(!three[0] && three[3 * 7 + 3], "corners lie outside, the middle does not");
+}

@@ -191,6 +191,7 @@ fn tilted_lamps_have_the_angles_of_the_real_ones() {
         }
         for (expression, printed) in ["tilt_ang", "tilt_ang2", "tilt_xang", "tilt_xang2"].iter().zip(printed) {
             let value = value(&mut library, "tilt.cal", expression, &[], &channels);
+            // Axes have seven digits, which may be 6e-6 degrees, and angles, up to 5e-6.
             assert!((value - printed).abs() < 2e-5, "{expression} {axes:?}: {value}, not {printed}");
         }
     }

@@ -83,6 +83,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn short_numbers_are_what_the_standard_library_reads() {
+        for text in
+            ["0", "-0", "5.", ".5", "-.5", "1.25", "007", "123456789012345", "-0.00000000000001", "3.1415926535897"]
+        {
+            for rest in ["", " 7", "\n", ",", "x"] {
+                let (number, length) = short_decimal(format!("{text}{rest}").as_bytes()).expect(text);
+                assert_eq!((number.to_bits(), length), (text.parse::<f64>().unwrap().to_bits(), text.len()), "{text}");
+            }
+        }
+        for none in ["", "-", ".", "-.", "+1", "x", "1234567890123456", "0.0000000000000001", "99999999999999999999999"]
+        {
+            assert_eq!(short_decimal(none.as_bytes()), None, "{none}");
+        }
+    }
+
+    #[test]
     fn numbers_are_those_of_option_values() {
         for word in ["1", "+1", "-.5", "1.", "1e-2", "1.5E+3", "007"] {
             assert!(real(word).is_some(), "{word}");

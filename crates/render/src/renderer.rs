@@ -159,7 +159,7 @@ impl Renderer {
         let piece = (batch.len() / PARALLEL_FROM).clamp(1, TOGETHER);
         let parts = cache.steps().in_order(batch.len().div_ceil(piece), PARALLEL_FROM, 1, |k| {
             let numbers = batch.start + k * piece..batch.end.min(batch.start + (k + 1) * piece);
-            let answers = vec![Vec::with_capacity(numbers.len()); passes];
+            let answers = (0..passes).map(|_| Vec::with_capacity(numbers.len())).collect();
             let mut part = Part { answers, misses: Vec::new(), owners: Vec::new() };
             let mut work = tracer.work();
             for number in numbers {
@@ -167,7 +167,7 @@ impl Renderer {
                 for (pass, answers) in part.answers.iter_mut().enumerate() {
                     let (misses, pass) = (&mut part.misses, pass as u8);
                     let mut walk = Walk { tracer: &tracer, cache, work: &mut work, misses, pass, observer: () };
-                    answers.push(request.as_ref().map_or(R::NONE, |request| R::of(walk.answer(request))));
+                    answers.push(request.as_ref().map_or_else(R::none, |request| R::of(walk.answer(request))));
                 }
                 part.owners.resize(part.misses.len(), first + number - batch.start);
             }

@@ -1,7 +1,7 @@
 //! What is asked of a batch of rays, and what is kept of the answers: all that is known, or as little as a picture needs.
 
 use crate::request::{Answer, Request};
-use ambit_base::Rgb;
+use ambit_base::{DVec3, Rgb};
 
 /// Rays by number: each is made by the thread that follows it.
 pub trait Rays: Sync {
@@ -31,10 +31,17 @@ pub struct Seen {
     pub length: f32,
 }
 
+impl From<&Answer> for Seen {
+    #[inline]
+    fn from(answer: &Answer) -> Self {
+        Self { value: answer.value, length: answer.length as f32 }
+    }
+}
+
 /// What is kept of an answer.
 pub(crate) trait Reply: Clone + Send {
     /// What stands for a ray that there is none of.
-    const NONE: Self;
+    fn none() -> Self;
 
     fn of(answer: Answer) -> Self;
 
@@ -52,7 +59,9 @@ fn make_finite(colour: &mut Rgb) {
 }
 
 impl Reply for Answer {
-    const NONE: Self = Self::NOTHING;
+    fn none() -> Self {
+        Self::nothing(DVec3::ZERO, DVec3::ZERO)
+    }
 
     #[inline]
     fn of(answer: Answer) -> Self {
@@ -70,11 +79,13 @@ impl Reply for Answer {
 }
 
 impl Reply for Seen {
-    const NONE: Self = Self { value: Rgb::ZERO, length: 0.0 };
+    fn none() -> Self {
+        Self::default()
+    }
 
     #[inline]
     fn of(answer: Answer) -> Self {
-        Self { value: answer.value, length: answer.length as f32 }
+        Self::from(&answer)
     }
 
     fn add(&mut self, light: Rgb) {

@@ -71,29 +71,26 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// The answer to no ray.
-    pub(crate) const NOTHING: Self = Self {
-        value: Rgb::ZERO,
-        mirrored: Rgb::ZERO,
-        length: FAR,
-        mirrored_length: FAR,
-        unmirrored_length: FAR,
-        first_length: FAR,
-        origin: DVec3::ZERO,
-        direction: DVec3::ZERO,
-        point: DVec3::ZERO,
-        normal: DVec3::ZERO,
-        geometric_normal: DVec3::ZERO,
-        uv: [0.0; 2],
-        surface: VOID,
-        modifier: VOID,
-        material: VOID,
-        weight: 1.0,
-        coefficient: Rgb::ONE,
-    };
-
     /// The answer to a ray that met nothing.
     pub fn nothing(origin: DVec3, direction: DVec3) -> Self {
-        Self { origin, direction, point: origin, ..Self::NOTHING }
+        Self {
+            value: Rgb::ZERO,
+            mirrored: Rgb::ZERO,
+            length: FAR,
+            mirrored_length: FAR,
+            unmirrored_length: FAR,
+            first_length: FAR,
+            origin,
+            direction,
+            point: origin,
+            normal: DVec3::ZERO,
+            geometric_normal: DVec3::ZERO,
+            uv: [0.0; 2],
+            surface: VOID,
+            modifier: VOID,
+            material: VOID,
+            weight: 1.0,
+            coefficient: Rgb::ONE,
+        }
     }
 }

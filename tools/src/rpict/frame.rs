@@ -9,9 +9,10 @@ use super::watch::Watch;
 use crate::colour::Conversion;
 use crate::light::{Light, Scene};
 use crate::session::{Session, Stop};
-use ambit_base::{Notify, Rgb};
+use ambit_base::Notify;
 use ambit_cli::{Failure, PictureOptions};
 use ambit_file::{PixelSpace, Projection, View, fit_resolution};
+use ambit_render::Seen;
 use ambit_render::picture::{Band, Camera, Lens, Order, Pixel, Sampler, SmallSources};
 
 /// Most pixels across: samples are numbered along a Hilbert curve by 32 bits.
@@ -44,8 +45,6 @@ pub(crate) struct Frame {
     pub(crate) distances: Option<String>,
     /// What is there already.
     pub(crate) recovered: Option<Recovered>,
-    /// False if what all pictures have in common stands on the stream already.
-    pub(crate) first: bool,
 }
 
 /// A view that has passed its checks.
@@ -69,7 +68,6 @@ impl Frame {
             shared: false,
             distances: None,
             recovered: None,
-            first: true,
         }
     }
 
@@ -199,7 +197,7 @@ impl Picture<'_> {
         sampler.run(
             &mut |pixels| {
                 let light = &mut **scene.borrow_mut();
-                let answers = shots.trace(pixels, &|p| camera.ray(p), light, &|s| self.pixel(s.value, s.length))?;
+                let answers = shots.trace(pixels, &|p| camera.ray(p), light, &|seen| self.pixel(seen))?;
                 traced += pixels.len();
                 if traced <= first {
                     watch.borrow_mut().step(part(share * traced as f64 / first as f64));
@@ -211,7 +209,7 @@ impl Picture<'_> {
                     let (mut scene, mut answers) = (scene.borrow_mut(), Vec::new());
                     scene.check()?;
                     scene.trace(requests, &mut answers)?;
-                    Ok(answers.iter().map(|a| self.pixel(a.value, a.length as f32)).collect())
+                    Ok(answers.iter().map(|answer| self.pixel(&answer.into())).collect())
                 })?;
                 let left = f64::from(band.top + 1) - band.rows.len() as f64;
                 output.pixels(&band.rows)?;
@@ -223,7 +221,7 @@ impl Picture<'_> {
         )
     }
 
-    fn pixel(&self, value: Rgb, distance: f32) -> Pixel {
-        Pixel { colour: self.conversion.apply(value), distance }
+    fn pixel(&self, seen: &Seen) -> Pixel {
+        Pixel { colour: self.conversion.apply(seen.value), distance: seen.length }
     }
 }

@@ -19,7 +19,8 @@ impl Picture<'_> {
 
     /// The header of a frame, without the preamble if it stands on the stream already.
     pub(crate) fn header(&self, frame: &Frame, octree: &Header) -> Header {
-        let mut header = if frame.first { self.preamble(octree) } else { Header::empty() };
+        let begun = frame.number.is_some() && frame.output.is_none();
+        let mut header = if begun { Header::empty() } else { self.preamble(octree) };
         if let Some(number) = frame.number {
             header.push(format!("FRAME={number}"));
         }

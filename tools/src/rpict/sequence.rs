@@ -39,7 +39,7 @@ pub(crate) fn run(picture: &Picture<'_>, scene: &mut Scene<'_>, mut views: impl 
     let recovering = recover_frame(options)?;
     let mut view = options.view;
     let mut number = options.sequence;
-    let mut previous = if number > 1 { options.view.set_up().ok() } else { None };
+    let mut previous = if number > 1 { Some(set_up(&options.view)?) } else { None };
     let mut made = false;
     if options.output.is_none() {
         // Once for all pictures on the stream, and even if there is none.
@@ -51,7 +51,6 @@ pub(crate) fn run(picture: &Picture<'_>, scene: &mut Scene<'_>, mut views: impl 
         if !skipped {
             let mut frame = plan(picture, projection, number, recovering == Some(number))?;
             frame.previous = previous.filter(|_| options.motion > 0.0);
-            frame.first = frame.output.is_some();
             made |= picture.make(&frame, scene)?;
         }
         previous = Some(projection);

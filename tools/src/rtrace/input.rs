@@ -229,6 +229,33 @@ mod tests {
         std::iter::from_fn(|| reader.next()).map(|(o, d)| [o.x, o.y, o.z, d.x, d.y, d.z]).collect()
     }
 
+    /// Input that comes byte by byte.
+    struct Drops<'a>(&'a [u8]);
+
+    impl Read for Drops<'_> {
+        fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+            let count = self.0.len().min(bytes.len()).min(1);
+            bytes[..count].copy_from_slice(&self.0[..count]);
+            self.0 = &self.0[count..];
+            Ok(count)
+        }
+    }
+
+    impl Awaited for Drops<'_> {
+        fn waits(&self) -> bool {
+            false
+        }
+    }
+
+    #[test]
+    fn words_may_come_in_pieces() {
+        let text = "12.5 -3 1e2\n4 55 .75 100 200 300 400 500 600";
+        let mut reader = RayReader::new(Drops(text.as_bytes()), InputFormat::Ascii);
+        let read: Vec<_> = std::iter::from_fn(|| reader.next()).map(|(o, d)| [o.x, o.y, o.z, d.x, d.y, d.z]).collect();
+        assert_eq!(read, [[12.5, -3.0, 100.0, 4.0, 55.0, 0.75], [100.0, 200.0, 300.0, 400.0, 500.0, 600.0]]);
+        assert_eq!(read, rays(text));
+    }
+
     #[test]
     fn any_layout_of_words_will_do() {
         assert_eq!(

@@ -32,10 +32,8 @@ impl<O: Observer> Walk<'_, O> {
                 Alternate::Void => VOID,
                 Alternate::Modifier(id) => id,
             };
-            if ray.cosine() < 0.0 || !ray.lineage.meets(Kinds::INDIRECT) {
-                return self.shade_with(ray, id, *bare);
-            }
-            if self.tracer.scene.modifiers.opacity(id) == Opacity::Transparent {
+            let seen = ray.cosine() < 0.0 || !ray.lineage.meets(Kinds::INDIRECT);
+            if seen || self.tracer.scene.modifiers.opacity(id) == Opacity::Transparent {
                 return self.shade_with(ray, id, *bare);
             }
         }

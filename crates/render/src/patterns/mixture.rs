@@ -98,12 +98,13 @@ impl<O: Observer> Walk<'_, O> {
             return Some(true);
         }
         ray.normal = Facing::of(ray, finish.tilt, false).normal;
-        let whole = *ray;
         let mut parts = shares.map(|share| {
-            let mut part = whole;
-            part.weight *= share as f32;
-            part.throughput *= share as f32;
-            (share > EPSILON).then_some((part, share as f32))
+            (share > EPSILON).then(|| {
+                let mut part = *ray;
+                part.weight *= share as f32;
+                part.throughput *= share as f32;
+                (part, share as f32)
+            })
         });
         // A side without material lets its ray pass after the other one is shaded: ray trees show it in that order.
         let mut passing = [false; 2];
@@ -112,8 +113,8 @@ impl<O: Observer> Walk<'_, O> {
                 *passes = !self.shade_with(part, side, *finish);
             }
         }
-        for (part, _) in parts.iter_mut().zip(passing).filter(|&(_, passes)| passes) {
-            if let Some((part, _)) = part {
+        for (part, passes) in parts.iter_mut().zip(passing) {
+            if let (Some((part, _)), true) = (part, passes) {
                 self.pass_through(part);
             }
         }

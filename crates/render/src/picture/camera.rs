@@ -48,7 +48,7 @@ impl Camera {
         let y = (f64::from(pixel.y) + 0.5 + jy) / f64::from(self.height);
         let mut ray = self.projection.ray(x, y)?;
         // What was outside of the view before stands still.
-        if let Some(before) = self.previous.and_then(|previous| previous.ray(x, y)) {
+        if let Some(before) = self.previous.as_ref().and_then(|previous| previous.ray(x, y)) {
             let u = self.lens.motion * (0.5 - random.child(SHUTTER).one());
             ray = between(&ray, &before, u);
         }
