@@ -29,6 +29,10 @@ const MAX_MOVE: f32 = 2.0;
 /// its own pixels and less between them, so that a view from elsewhere would thicken what is thick enough. Half of the
 /// records that it would add do little for the error.
 const FOUND: f32 = 3.0;
+/// How far off a record's plane a query may lie, for its distance along the plane, before the angle between their normals is
+/// added: a smooth surface that turns by an angle rises by less than the angle times the distance. What lies farther off is
+/// on another surface, one step up or down, that may see what the record does not. A tenth takes in what is engraved.
+const STEP: f32 = 0.1;
 /// Queries this near to a corralled record, as a fraction of its reach, need no probe: the azimuth of so short a vector
 /// means nothing, and probing would reject a record at its own place.
 const COINCIDENT: f32 = 1e-3;
@@ -165,11 +169,16 @@ pub(crate) fn accumulate<S: Sampler>(
     if dn < -asked.behind {
         return 0.0;
     }
+    let (tilt, off) = (tilt2.sqrt(), (dn.abs() - asked.rounding).max(0.0));
+    let slope = STEP + tilt;
+    if off * off > slope * slope * (d2 - dn * dn).max(0.0) {
+        return 0.0;
+    }
     let u = Vec3::from_array(entry.u);
     let v = normal.cross(u);
     let (du, dv) = (d.dot(u), d.dot(v));
     let [i0, i1] = entry.inverse_radii;
-    let (en, eu, ev) = ((dn.abs() - asked.rounding).max(0.0) * i0, du * i0, dv * i1);
+    let (en, eu, ev) = (off * i0, du * i0, dv * i1);
     let reach2 = en * en + eu * eu + ev * ev;
     if reach2 >= a2 {
         return 0.0;
@@ -191,7 +200,7 @@ pub(crate) fn accumulate<S: Sampler>(
         }
         return 0.0;
     }
-    let (facing, reach) = (1.0 - tilt2.sqrt() / angle, reach2.sqrt());
+    let (facing, reach) = (1.0 - tilt / angle, reach2.sqrt());
     let weight = facing * (1.0 - reach / asked.accuracy).max(0.0);
     let smooth = facing * (1.0 - reach / asked.used);
     sum.weight += if entry.found { weight * FOUND } else { weight };
