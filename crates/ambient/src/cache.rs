@@ -113,7 +113,11 @@ impl Cache {
     /// Uses records as those of a file are to be used, which are loaded next.
     pub fn adopt(&mut self, habits: Habits) {
         self.limits.smoothing = self.limits.smoothing.min(habits.smoothing).max(1.0);
-        if !habits.reined && self.params.systems.clamping == Clamping::Deeper {
+        if habits.ours {
+            return;
+        }
+        self.limits.step = f32::INFINITY;
+        if self.params.systems.clamping == Clamping::Deeper {
             self.reins = None;
         }
     }

@@ -29,10 +29,6 @@ const MAX_MOVE: f32 = 2.0;
 /// its own pixels and less between them, so that a view from elsewhere would thicken what is thick enough. Half of the
 /// records that it would add do little for the error.
 const FOUND: f32 = 3.0;
-/// How far off a record's plane a query may lie, for its distance along the plane, before the angle between their normals is
-/// added: a smooth surface that turns by an angle rises by less than the angle times the distance. What lies farther off is
-/// on another surface, one step up or down, that may see what the record does not. A tenth takes in what is engraved.
-const STEP: f32 = 0.1;
 /// Queries this near to a corralled record, as a fraction of its reach, need no probe: the azimuth of so short a vector
 /// means nothing, and probing would reject a record at its own place.
 const COINCIDENT: f32 = 1e-3;
@@ -56,6 +52,7 @@ pub(crate) struct Asked {
     /// How far below a record's plane a query may lie.
     behind: f32,
     rounding: f32,
+    step: f32,
     /// Within this distance a record that would be rejected for its steep extrapolation still serves as last resort.
     spare_reach: f32,
     interpolation: Interpolation,
@@ -76,6 +73,7 @@ impl Asked {
             used: limits.used(query.level) as f32,
             behind: (limits.min_radius * limits.accuracy + rounding) as f32,
             rounding: rounding as f32,
+            step: limits.step,
             spare_reach: (0.5 * limits.min_radius * limits.accuracy) as f32,
             interpolation: limits.interpolation,
         }
@@ -170,7 +168,7 @@ pub(crate) fn accumulate<S: Sampler>(
         return 0.0;
     }
     let (tilt, off) = (tilt2.sqrt(), (dn.abs() - asked.rounding).max(0.0));
-    let slope = STEP + tilt;
+    let slope = asked.step + tilt;
     if off * off > slope * slope * (d2 - dn * dn).max(0.0) {
         return 0.0;
     }

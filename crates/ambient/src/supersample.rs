@@ -2,12 +2,16 @@
 //!
 //! What a cell's own sample found has no say in it, but by way of the total that is shared out. A cell's mean is that of all
 //! its samples, the first included: if bright first samples brought further ones and dark ones did not, means would be too
-//! dark.
+//! dark. A lone one that outshines much of all else has a say after all (a lamp's reflection in a ball): it tells of chance
+//! more than of light, and what it takes from the mean is less than what it would leave as a blot.
 
 /// Sides of the grid below which there are no extra samples.
 const MIN_SIDE: usize = 8;
 /// Extra samples per side of the grid below which there are none.
 const MIN_PER_SIDE: usize = 4;
+
+/// The share of all brightness from which on a cell is looked at for what itself found.
+const GLARING: f64 = 0.2;
 
 /// The number of extra samples of a hemisphere of side `n`: `-as` times the weight, rounded, 0 where too few to matter.
 pub(crate) fn budget(super_samples: i32, weight: f32, n: usize) -> usize {
@@ -19,6 +23,12 @@ pub(crate) fn budget(super_samples: i32, weight: f32, n: usize) -> usize {
 /// number a cell. The last column of rings does not know the first: cells on a border make up for missing neighbours.
 pub(crate) fn allocate(size: [usize; 2], brightness: &[f32], budget: usize, chance: impl Fn(usize) -> f64) -> Vec<u32> {
     let mut error = differences(size, brightness);
+    let glaring = GLARING * brightness.iter().map(|&b| f64::from(b)).sum::<f64>();
+    for (e, &b) in error.iter_mut().zip(brightness) {
+        if f64::from(b) > glaring {
+            *e = e.max(f64::from(b));
+        }
+    }
     // Left to go: summed from the end so that the last share takes what remains.
     let mut left = vec![0.0; error.len() + 1];
     for i in (0..error.len()).rev() {
@@ -104,22 +114,26 @@ mod tests {
         }
     }
 
-    /// The mean over many hemispheres of lone bright samples, with extra ones, over the true mean.
+    /// The mean over many hemispheres of what lone bright samples bring, with extra ones, over the true mean.
     fn mean_of_rare_samples(size: [usize; 2], budget: usize) -> f64 {
         const HEMISPHERES: u32 = 20_000;
         const BRIGHT: f64 = 0.02;
+        // So light that none of the bright ones glares.
+        const DARK: f32 = 0.1;
         let cells = size[0] * size[1];
         let mut sum = 0.0;
         for k in 0..HEMISPHERES {
-            let sample =
-                |cell: usize, n: u32| f32::from(Stream::new(k, (cell as u64) << 16 | u64::from(n)).one() < BRIGHT);
+            let sample = |cell: usize, n: u32| {
+                if Stream::new(k, (cell as u64) << 16 | u64::from(n)).one() < BRIGHT { 1.0 } else { DARK }
+            };
             let first: Vec<f32> = (0..cells).map(|cell| sample(cell, 0)).collect();
             let extra = allocate(size, &first, budget, |cell| Stream::new(k, 1 << 40 | cell as u64).one());
             let refined =
                 |cell: usize| (0..=extra[cell]).map(|n| sample(cell, n)).sum::<f32>() / (extra[cell] + 1) as f32;
             sum += (0..cells).map(|cell| f64::from(refined(cell))).sum::<f64>();
         }
-        sum / (f64::from(HEMISPHERES) * cells as f64 * BRIGHT)
+        let mean = sum / (f64::from(HEMISPHERES) * cells as f64);
+        (mean - f64::from(DARK)) / (BRIGHT * f64::from(1.0 - DARK))
     }
 
     #[test]
@@ -129,6 +143,21 @@ mod tests {
             // A hundred thousand bright first samples: a standard error of .32 %.
             assert!((mean - 1.0).abs() < 0.01, "{size:?}: {mean}");
         }
+    }
+
+    #[test]
+    fn a_glaring_cell_is_looked_at_itself() {
+        let counts = |bright: f32| {
+            let brightness: Vec<f32> = (0..256).map(|c| if c == 100 { bright } else { 1.0 }).collect();
+            allocate([16, 16], &brightness, 128, |c| (c as f64 * 0.618).fract())
+        };
+        assert_eq!(counts(60.0)[100], 0, "less than a fifth of all");
+        let glared = counts(70.0);
+        assert!(glared[100] > 128 / 4, "{glared:?}");
+        assert!(
+            [83, 84, 85, 99, 101, 115, 116, 117].iter().all(|&c| glared[c] > 0),
+            "so are its neighbours: {glared:?}"
+        );
     }
 
     #[test]

@@ -54,7 +54,7 @@ impl Renderer {
         if let Some(habits) = AmbientFile::habits(store.path, &self.opening(store, components)) {
             let own = &mut self.options.ambient;
             own.smoothing = own.smoothing.min(habits.smoothing);
-            if !habits.reined && own.systems.clamping == Clamping::Deeper {
+            if !habits.ours && own.systems.clamping == Clamping::Deeper {
                 own.systems.clamping = Clamping::Nobody;
             }
             self.cache_mut().adopt(habits);

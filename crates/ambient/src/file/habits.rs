@@ -14,8 +14,9 @@ pub struct Habits {
     /// How far they may count, as a multiple of their reach: their corrals tell what lies within as much, and must not be
     /// asked for more. 1 of Radiance, and of older versions.
     pub smoothing: f32,
-    /// Whether those of deeper bounces rein each other in; not if Radiance began the file.
-    pub reined: bool,
+    /// Whether Ambit began the file, and not Radiance: then those of deeper bounces rein each other in, and steps part
+    /// surfaces.
+    pub ours: bool,
 }
 
 impl Habits {
@@ -23,7 +24,7 @@ impl Habits {
         let words = fingerprint_lines(header).flat_map(|line| line.split(u8::is_ascii_whitespace));
         let told = words.filter_map(|word| std::str::from_utf8(word.strip_prefix(b"smoothing=")?).ok()?.parse().ok());
         let smoothing = told.last().unwrap_or(1.0);
-        Self { smoothing, reined: fingerprint_lines(header).next().is_some() }
+        Self { smoothing, ours: fingerprint_lines(header).next().is_some() }
     }
 }
 
@@ -54,9 +55,9 @@ mod tests {
             let text = format!("#?RADIANCE\n{lines}FORMAT=Radiance_ambval\n\n");
             Habits::of(&Header::parse(text.as_bytes(), "a.amb").expect("a header").0)
         };
-        assert_eq!(habits("rpict -ab 1\n"), Habits { smoothing: 1.0, reined: false });
-        assert_eq!(habits("AMBIT_OPTIONS= ab=1\n"), Habits { smoothing: 1.0, reined: true });
-        assert_eq!(habits("AMBIT_OPTIONS= ab=1 smoothing=1\n"), Habits { smoothing: 1.0, reined: true });
-        assert_eq!(habits("AMBIT_OPTIONS= ab=1 smoothing=1.5\n"), Habits { smoothing: 1.5, reined: true });
+        assert_eq!(habits("rpict -ab 1\n"), Habits { smoothing: 1.0, ours: false });
+        assert_eq!(habits("AMBIT_OPTIONS= ab=1\n"), Habits { smoothing: 1.0, ours: true });
+        assert_eq!(habits("AMBIT_OPTIONS= ab=1 smoothing=1\n"), Habits { smoothing: 1.0, ours: true });
+        assert_eq!(habits("AMBIT_OPTIONS= ab=1 smoothing=1.5\n"), Habits { smoothing: 1.5, ours: true });
     }
 }

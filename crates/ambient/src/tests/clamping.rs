@@ -81,6 +81,6 @@ fn records_of_others_files_are_left_free() {
     let held = radii(None);
     // What 0.05 was before it was widened for its weight, and twice the distance.
     assert!((f64::from(held) * 0.5f64.sqrt() - (0.05 * 0.5f64.sqrt() + 0.2)).abs() < 1e-6, "{held}");
-    assert_eq!(radii(Some(Habits { smoothing: 1.0, reined: true })), held);
-    assert_eq!(radii(Some(Habits { smoothing: 1.0, reined: false })), 4.0);
+    assert_eq!(radii(Some(Habits { smoothing: 1.0, ours: true })), held);
+    assert_eq!(radii(Some(Habits { smoothing: 1.0, ours: false })), 4.0);
 }

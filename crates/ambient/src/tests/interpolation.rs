@@ -1,7 +1,7 @@
 //! Which records answer which queries.
 
 use crate::store::{ENOUGH, Store};
-use crate::{Cache, Interpolation, Limits, Miss, Params, Query, Record, Sample, SampleRay, Sampler};
+use crate::{Cache, Habits, Interpolation, Limits, Miss, Params, Query, Record, Sample, SampleRay, Sampler};
 use ambit_base::{DVec3, Rgb, Stream};
 
 /// Nothing but a wall in the plane x = `.0`.
@@ -135,6 +135,20 @@ fn steps_part_surfaces_and_curves_do_not_at_any_scale_and_place() {
             );
         }
     }
+}
+
+#[test]
+fn records_of_a_file_that_radiance_began_answer_over_steps() {
+    let answers = |habits: Option<Habits>| {
+        let mut cache = Cache::new(Params { resolution: 64, ..Params::default() }, DVec3::splat(-2.0), 4.0);
+        if let Some(habits) = habits {
+            cache.adopt(habits);
+        }
+        assert_eq!(cache.load([record()]), 0);
+        cache.lookup(&OPEN, &query(0.01, 0.0, 0.09)).is_some()
+    };
+    assert!(!answers(None) && !answers(Some(Habits { smoothing: 1.0, ours: true })));
+    assert!(answers(Some(Habits { smoothing: 1.0, ours: false })));
 }
 
 #[test]
