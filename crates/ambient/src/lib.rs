@@ -71,7 +71,7 @@ pub use light::{APART, Light};
 pub use observe::{Clock, LEVELS, Observed};
 pub use params::{
     ASSUMED_REFLECTANCE, Bounces, Clamping, Interpolation, Limits, MOST_OVERLAP, OVERLAP, Params, SMOOTHING, Spacing,
-    Systems,
+    StepTest, Systems,
 };
 pub use record::Record;
 pub use sampler::{Answer, Miss, Query, Sample, SampleRay, Sampler};

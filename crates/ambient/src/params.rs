@@ -68,6 +68,8 @@ pub struct Systems {
     pub spacing: Spacing,
     /// `--interpolation`: of what order values between records are.
     pub interpolation: Interpolation,
+    /// `--step-test`: whether steps part surfaces.
+    pub step_test: StepTest,
 }
 
 /// Which records rein each other in: by how much radii, before widening by weight, may exceed each other.
@@ -100,6 +102,16 @@ pub enum Spacing {
     Hessian,
     /// The harmonic mean distance of the surroundings (split sphere), with the gradients of Ward & Heckbert 1992; circles.
     Classical,
+}
+
+/// Whether records answer for surfaces a step above or below theirs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StepTest {
+    /// No: see [`Limits::step`].
+    #[default]
+    On,
+    /// As far above as along, and below by what the least radius allows, as in Radiance.
+    Off,
 }
 
 /// Of what order values between records are.
@@ -180,15 +192,16 @@ pub struct Limits {
     pub smoothing: f32,
     /// How far off a record's plane a query may lie, for its distance along the plane, before the angle between their normals
     /// is added: a smooth surface that turns by an angle rises by less than the angle times the distance. What lies farther
-    /// off is on another surface, one step up or down, that may see what the record does not. Without end where Radiance's
-    /// records are to do.
+    /// off is on another surface, one step up or down, that may see what the record does not. Infinite without the test.
     pub step: f32,
     /// Of what order values between records are.
     pub interpolation: Interpolation,
 }
 
-/// [`Limits::step`]: takes in what is engraved; from a fifth on, light comes in from outside.
+/// [`Limits::step`], a slope and so the same at all scales: takes in what is engraved; from a fifth on, light comes in from
+/// outside.
 const STEP: f32 = 0.1;
+
 /// The angle two normals may always differ by, radians; the tolerance is added to it.
 const BASE_ANGLE: f64 = 10.0 * std::f64::consts::PI / 180.0;
 
@@ -231,7 +244,10 @@ impl Limits {
             unit,
             actual_weights: params.systems.actual_weights,
             smoothing: params.smoothing.max(1.0),
-            step: STEP,
+            step: match params.systems.step_test {
+                StepTest::On => STEP,
+                StepTest::Off => f32::INFINITY,
+            },
             interpolation: params.systems.interpolation,
         }
     }

@@ -71,7 +71,7 @@ fn heading(flag: &str) -> &'static str {
         "-error" => "Quality",
         "-reuse" | "-stats" | "-unbiased" | "-unbounded-bounces" | "-exact-textures" | "-actual-weights"
         | "-bounces" | "-neighbor-clamping" | "-measured-reuse" | "-overlap" | "-smoothing" | "-interpolation"
-        | "-spacing" => "Interreflection",
+        | "-spacing" | "-step-test" => "Interreflection",
         _ => match flag.as_bytes()[0] {
             b'v' => "View",
             b'd' => "Direct light",

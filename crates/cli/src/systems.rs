@@ -4,7 +4,7 @@ use crate::common::Carries;
 use crate::failure::Failure;
 use crate::rendering::Rendering;
 use crate::table::{Place, Row};
-use ambit_render::{Bounces, Clamping, Interpolation, MOST_OVERLAP, Spacing};
+use ambit_render::{Bounces, Clamping, Interpolation, MOST_OVERLAP, Spacing, StepTest};
 
 /// Beyond it, values of other walls' corners come in.
 const MOST_SMOOTHING: f32 = 2.0;
@@ -105,6 +105,20 @@ pub(crate) fn system_rows<S: Carries<Rendering>>() -> Vec<Row<S>> {
              values lie evenly around; unless given) or first (for linear ones, as in Radiance)",
         )
         .values("ORDER"),
+        Row::new(
+            "-step-test",
+            Place::Word(|s: &mut S, how, _| {
+                light(s).options.ambient.systems.step_test = match how.as_str() {
+                    "on" => StepTest::On,
+                    "off" => StepTest::Off,
+                    other => return Err(Failure::choice("--step-test", other, &["on", "off"])),
+                };
+                Ok(())
+            }),
+            "whether irradiance values serve surfaces a step above or below theirs: on (they do not; unless given) or off (they do, \
+             as in Radiance, and with its ambient files whatever is given; fewer are made, and light may come under lintels)",
+        )
+        .values("HOW"),
         Row::new(
             "-spacing",
             Place::Word(|s: &mut S, how, _| {

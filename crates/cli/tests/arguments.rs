@@ -280,6 +280,7 @@ fn options_with_a_choice_say_which() {
         ("--measured-reuse", &["auto", "on", "off"]),
         ("--bounces", &["apart", "mixed"]),
         ("--spacing", &["hessian", "classical"]),
+        ("--step-test", &["on", "off"]),
         ("--overlap", &["0", "0.9"]),
     ] {
         for failure in [rtrace(&format!("{option} 7")).1.unwrap_err(), rpict(&format!("{option} 7")).1.unwrap_err()] {

@@ -8,7 +8,7 @@
 
 use crate::prepare::{Contents, Definition, Environment, Loaded};
 use crate::{Options, Selection};
-use ambit_ambient::{Bounces, Clamping, Fingerprint, Gravity, Interpolation, Mark, MarkLine, Spacing};
+use ambit_ambient::{Bounces, Clamping, Fingerprint, Gravity, Interpolation, Mark, MarkLine, Spacing, StepTest};
 use ambit_base::{Rgb, hash_bits, hash_point, mix};
 use ambit_file::{bytes_of, encode_float, general, text_of};
 use ambit_octree::Mesh;
@@ -322,6 +322,7 @@ fn option_marks(options: &Options, edge: f64, relays: bool) -> Vec<Mark> {
         slight("overlap", "--overlap", g(f64::from(a.overlap))),
         slight("smoothing", "--smoothing", g(f64::from(a.smoothing))),
         slight("interpolation", "--interpolation", interpolation(a.systems.interpolation).to_owned()),
+        slight("steps", "--step-test", switch(a.systems.step_test == StepTest::On)),
         slight("measured", "--measured-reuse", switch(a.systems.measured_reuse)),
     ]
 }

@@ -28,7 +28,7 @@ mod unbounded;
 mod walk;
 mod work;
 
-pub use ambit_ambient::{Bounces, Clamping, Interpolation, MOST_OVERLAP, Spacing, Systems};
+pub use ambit_ambient::{Bounces, Clamping, Interpolation, MOST_OVERLAP, Spacing, StepTest, Systems};
 pub use ambit_ambient::{Fingerprint, Reuse};
 pub use error::Error;
 pub use fingerprint::SceneFingerprint;

@@ -3,7 +3,7 @@
 
 use crate::spectral::tristimulus;
 use crate::{Error, Renderer};
-use ambit_ambient::{AmbientFile, Clamping, Components, FileError, Fingerprint, Opening, PATIENCE, Reuse};
+use ambit_ambient::{AmbientFile, Clamping, Components, FileError, Fingerprint, Opening, PATIENCE, Reuse, StepTest};
 use ambit_base::Notify;
 use std::path::Path;
 
@@ -54,8 +54,11 @@ impl Renderer {
         if let Some(habits) = AmbientFile::habits(store.path, &self.opening(store, components)) {
             let own = &mut self.options.ambient;
             own.smoothing = own.smoothing.min(habits.smoothing);
-            if !habits.ours && own.systems.clamping == Clamping::Deeper {
-                own.systems.clamping = Clamping::Nobody;
+            if !habits.ours {
+                own.systems.step_test = StepTest::Off;
+                if own.systems.clamping == Clamping::Deeper {
+                    own.systems.clamping = Clamping::Nobody;
+                }
             }
             self.cache_mut().adopt(habits);
         }

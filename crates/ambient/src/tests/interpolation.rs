@@ -1,7 +1,9 @@
 //! Which records answer which queries.
 
 use crate::store::{ENOUGH, Store};
-use crate::{Cache, Habits, Interpolation, Limits, Miss, Params, Query, Record, Sample, SampleRay, Sampler};
+use crate::{
+    Cache, Habits, Interpolation, Limits, Miss, Params, Query, Record, Sample, SampleRay, Sampler, StepTest, Systems,
+};
 use ambit_base::{DVec3, Rgb, Stream};
 
 /// Nothing but a wall in the plane x = `.0`.
@@ -138,17 +140,22 @@ fn steps_part_surfaces_and_curves_do_not_at_any_scale_and_place() {
 }
 
 #[test]
-fn records_of_a_file_that_radiance_began_answer_over_steps() {
-    let answers = |habits: Option<Habits>| {
-        let mut cache = Cache::new(Params { resolution: 64, ..Params::default() }, DVec3::splat(-2.0), 4.0);
+fn records_answer_over_steps_where_asked_to_and_in_files_that_radiance_began() {
+    let answers = |step_test, habits: Option<Habits>| {
+        let systems = Systems { step_test, ..Systems::default() };
+        let mut cache = Cache::new(Params { systems, ..Params::default() }, DVec3::splat(-2.0), 4.0);
         if let Some(habits) = habits {
             cache.adopt(habits);
         }
         assert_eq!(cache.load([record()]), 0);
-        cache.lookup(&OPEN, &query(0.01, 0.0, 0.09)).is_some()
+        // Off the plane straight above, and a little aside.
+        let found = [0.0, 0.01].map(|x| cache.lookup(&OPEN, &query(x, 0.0, 0.09)).is_some());
+        assert_eq!(found[0], found[1]);
+        found[0]
     };
-    assert!(!answers(None) && !answers(Some(Habits { smoothing: 1.0, ours: true })));
-    assert!(answers(Some(Habits { smoothing: 1.0, ours: false })));
+    let begun = |ours| Some(Habits { smoothing: 1.0, ours });
+    assert!(!answers(StepTest::On, None) && !answers(StepTest::On, begun(true)));
+    assert!(answers(StepTest::On, begun(false)) && answers(StepTest::Off, None) && answers(StepTest::Off, begun(true)));
 }
 
 #[test]
