@@ -75,6 +75,11 @@ pub(crate) struct Interior {
 
 impl Interior {
     pub(crate) const VACUUM: Self = Self { extinction: Rgb::ZERO, albedo: Rgb::ZERO, eccentricity: 0.0, sources: 0 };
+
+    /// The same, within the mists that `around` lies in: a body displaces their matter, but what they list still holds.
+    pub(crate) fn within(self, around: Self) -> Self {
+        Self { sources: around.sources, ..self }
+    }
 }
 
 /// Extinction times length below which nothing happens, and above which nothing is left.

@@ -46,12 +46,12 @@ impl<O: Observer> Walk<'_, O> {
         ray.normal = if entering { facing.normal } else { -facing.normal };
         let (eta, beyond) = if entering {
             if m.outside.is_some() {
-                ray.interior = outside;
+                ray.interior = outside.within(ray.interior);
             }
-            (outer_index / m.inside.1, inside)
+            (outer_index / m.inside.1, inside.within(ray.interior))
         } else {
-            ray.interior = inside;
-            (m.inside.1 / outer_index, outside)
+            ray.interior = inside.within(ray.interior);
+            (m.inside.1 / outer_index, outside.within(ray.interior))
         };
         let d = ray.direction;
         let c = facing.cosine;
