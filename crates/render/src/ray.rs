@@ -85,6 +85,9 @@ impl Interior {
 /// Extinction times length below which nothing happens, and above which nothing is left.
 const THIN: f32 = 1e-6;
 const THICK: f32 = 92.0;
+/// Extinctions with no component of this size are none, even on the way to distant sources. Negative ones, as patterns below
+/// zero make them, are none either unless another component is above.
+pub(crate) const THINNEST: f32 = (1.0 / FAR) as f32;
 
 /// exp(−σt) per channel.
 pub(crate) fn transmittance(extinction: Rgb, distance: f64) -> Rgb {

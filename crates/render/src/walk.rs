@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::observer::Observer;
-use crate::ray::{Kinds, Ray, transmittance};
+use crate::ray::{Kinds, Ray, THINNEST, transmittance};
 use crate::tracer::{Origin, Tracer};
 use crate::work::Work;
 use ambit_ambient::{Cache, Miss};
@@ -82,7 +82,7 @@ impl<O: Observer> Walk<'_, O> {
     /// Applies the medium between a ray's origin and its hit.
     #[inline]
     fn medium(&mut self, ray: &mut Ray<'_>) {
-        if ray.interior.extinction != Rgb::ZERO {
+        if ray.interior.extinction.max_element() >= THINNEST {
             self.cross_medium(ray);
         }
     }

@@ -38,7 +38,8 @@ impl<O: Observer> Walk<'_, O> {
         let facing = Facing::of(ray, finish.tilt, true);
         let outside = match m.outside {
             Some((t, _)) => absorption(t * finish.pattern),
-            None => self.tracer.global_interior(),
+            // Light scatters evenly again, whatever `-mg` says: so Radiance has it.
+            None => Interior { eccentricity: 0.0, ..self.tracer.global_interior() },
         };
         let inside = absorption(m.inside.0 * finish.pattern);
         let outer_index = m.outside.map_or(1.0, |o| o.1);

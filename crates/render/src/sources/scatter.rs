@@ -7,7 +7,7 @@ use crate::Error;
 use crate::materials::Material;
 use crate::observer::Observer;
 use crate::prepare::{Environment, Prepared};
-use crate::ray::{Kinds, Ray, SourceSet, transmittance};
+use crate::ray::{Kinds, Ray, SourceSet};
 use crate::walk::Walk;
 use ambit_base::{Colour, EPSILON, FAR, Rgb, mix};
 use ambit_file::text_of;
@@ -16,6 +16,8 @@ use std::f64::consts::PI;
 
 /// Most points on a segment at which the light of a source is looked for.
 const MOST_POINTS: f64 = 16.0;
+/// Greatest exponent of light that grows on its way: e^80 is still a number.
+const MOST_GROWTH: Rgb = Rgb::splat(80.0);
 /// Tag of the points' places.
 const PLACES: u64 = 0x3157;
 
@@ -48,7 +50,8 @@ impl<O: Observer> Walk<'_, O> {
                 }
                 let Some(light) = self.scattered(&from, id, g, stream) else { continue };
                 let weight = (ray.distance / (4.0 * PI * points)) as f32;
-                let along = transmittance(medium.extinction, t) * medium.extinction * medium.albedo;
+                // Not `transmittance`: where a pattern makes the extinction negative, this light grows on its way.
+                let along = (-medium.extinction * t as f32).min(MOST_GROWTH).exp() * medium.extinction * medium.albedo;
                 ray.value += light * along * weight;
             }
         }
