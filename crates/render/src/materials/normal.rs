@@ -138,12 +138,14 @@ impl<O: Observer> Walk<'_, O> {
         let lump_reflected = !split.smooth && self.is_lumped(split.reflected);
         let lump_through = !split.smooth && self.is_lumped(split.through_specular);
         if !split.smooth {
+            // Of either lobe: what leaves through the surface, too, spreads along it.
+            let facets = Facets::isotropic(facing.normal, m.roughness);
             if split.reflected > EPSILON && !lump_reflected {
-                self.sample_reflection(ray, &facing, split.mirror, &Facets::isotropic(facing.normal, m.roughness));
+                self.sample_reflection(ray, &facing, split.mirror, &facets);
             }
             if split.through_specular > EPSILON && !lump_through {
                 let k = colour * split.through_specular as f32;
-                self.sample_transmission(ray, &facing, through, k, &Facets::isotropic(through, m.roughness));
+                self.sample_transmission(ray, &facing, through, k, &facets);
             }
         }
         let diffuse = colour * split.diffuse as f32;
