@@ -297,6 +297,12 @@ impl<'p> Ray<'p> {
         self.lineage.meets(Kinds::AMBIENT)
     }
 
+    /// Lets the ray count for nothing to its parent, not even with what a medium on its way adds, as in Radiance.
+    pub(crate) fn discount(&mut self) {
+        self.coefficient = Rgb::ZERO;
+        self.throughput = Rgb::ZERO;
+    }
+
     /// −d·n of the surface's own normal: positive for a front hit.
     pub(crate) fn cosine(&self) -> f64 {
         self.hit.as_ref().map_or(1.0, |h| h.cosine)

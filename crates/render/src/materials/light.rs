@@ -43,6 +43,7 @@ impl<O: Observer> Walk<'_, O> {
         let front = ray.cosine() > 0.0;
         let indirect = ray.lineage.meets(Kinds::INDIRECT) && !ray.is_shadow();
         if indirect && front && !m.glows_from(ray.distance) {
+            ray.discount();
             return true;
         }
         let aimed_here = self.is_target(ray);
@@ -66,8 +67,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         let far_glow = m.kind == Kind::Glow && m.radius >= 0.0 && ray.travelled + ray.distance > m.radius;
         if !self.tracer.options.direct.visible && !ray.is_shadow() && !far_glow {
-            // It does not even count with its coefficient (`-oW`).
-            ray.throughput = Rgb::ZERO;
+            ray.discount();
             return true;
         }
         if !front {
