@@ -80,12 +80,8 @@ impl Through {
         let mut found: [Option<Probe>; PROBES.len()] = [None; PROBES.len()];
         let mut count = 0;
         for [dx, dy] in PROBES {
-            let (x, y) = (dx * width - view.x, dy * width - view.y);
-            let z2 = 1.0 - x * x - y * y;
-            if z2 <= 0.0 {
-                continue;
-            }
-            let direction = DVec3::new(x, y, -z2.sqrt().copysign(view.z));
+            // The step lies in the surface, so near the horizon little of it remains.
+            let direction = (DVec3::new(dx, dy, 0.0) * width - view).normalize();
             let Some(cell) = lobe.cell(view, direction) else { continue };
             let excess = lobe.excess(&cell, view, direction, base);
             // What tells peak from surround is the whole value, also of cells that averages take as empty.
@@ -104,15 +100,16 @@ impl Through {
         let (mut surround_area, mut surround) = (0.0, Rgb::ZERO);
         let mut inside = true;
         for Probe { cell, excess, value, .. } in found.iter().flatten() {
-            inside &= cell.area <= WIDEST * least_area && value * f32::from(members) * STEEPNESS >= values;
-            let light = *excess * cell.area as f32;
+            let size = cell.size();
+            inside &= size <= WIDEST * least_area && value * f32::from(members) * STEEPNESS >= values;
+            let light = *excess * size as f32;
             if inside {
                 members += 1;
                 values += value;
-                area += cell.area;
+                area += size;
                 colour += light;
             } else {
-                surround_area += cell.area;
+                surround_area += size;
                 surround += light;
             }
         }
