@@ -119,7 +119,7 @@ impl Matrix {
     }
 
     pub(super) fn least_area(&self) -> f64 {
-        self.outgoing.least_area()
+        self.incoming.least_area().min(self.outgoing.least_area())
     }
 
     pub(super) fn total(&self, incident: DVec3) -> f64 {

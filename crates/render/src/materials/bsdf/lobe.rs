@@ -80,7 +80,7 @@ impl Lobe {
         self.cell(incident, opposite).map_or(0.0, |c| c.incident_area)
     }
 
-    /// The smallest projected solid angle of any exiting cell.
+    /// The smallest projected solid angle of any cell, on either side.
     pub(super) fn least_area(&self) -> f64 {
         match self {
             Self::Matrix(m) => m.least_area(),

@@ -176,7 +176,8 @@ impl Lit<'_> {
             let base = scattering.diffuse * FRAC_1_PI as f32;
             let mut rest = Rgb::ZERO;
             if let Some(through) = self.through.filter(|t| transmitted && t.shows(light, omega)) {
-                rest = through.surround;
+                // A pattern counts twice here: so Radiance has it.
+                rest = through.surround * self.pattern;
             } else if let Some(own) = lobe.cell(self.view, light) {
                 if self.jitter <= 0.0 {
                     rest = lobe.excess(&own, self.view, light, base);

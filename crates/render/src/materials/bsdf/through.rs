@@ -98,22 +98,22 @@ impl Through {
         found.sort_by(|a, b| value(b).total_cmp(&value(a)));
         let (mut members, mut values, mut area, mut colour) = (0u8, 0.0, 0.0, Rgb::ZERO);
         let (mut surround_area, mut surround) = (0.0, Rgb::ZERO);
-        let mut inside = true;
         for Probe { cell, excess, value, .. } in found.iter().flatten() {
             let size = cell.size();
-            inside &= size <= WIDEST * least_area && value * f32::from(members) * STEEPNESS >= values;
             let light = *excess * size as f32;
-            if inside {
+            if size <= WIDEST * least_area && value * f32::from(members) * STEEPNESS >= values {
                 members += 1;
                 values += value;
                 area += size;
                 colour += light;
+            } else if members == 0 {
+                return None;
             } else {
                 surround_area += size;
                 surround += light;
             }
         }
-        let enough = members > 0 && surround_area >= LEAST_SURROUND * area && colour.brightness() >= LEAST_PEAK;
+        let enough = surround_area >= LEAST_SURROUND * area && colour.brightness() >= LEAST_PEAK;
         enough.then(|| Self {
             colour: colour.max(Rgb::ZERO),
             surround: (surround / surround_area as f32).max(Rgb::ZERO),
