@@ -1,6 +1,7 @@
 //! Rays that sample a lobe, and what weak lobes add to the ambient part instead.
 
 use super::material::Lit;
+use super::through::distance_squared;
 use crate::observer::Observer;
 use crate::ray::{Kinds, Ray};
 use crate::walk::Walk;
@@ -35,7 +36,7 @@ impl<O: Observer> Walk<'_, O> {
         let through = lit.through.as_ref().filter(|_| sampling.transmitted);
         let tag = if sampling.transmitted { TRANSMISSION } else { REFLECTION };
         let stream = ray.stream.child(mix(tag, u64::from(ray.material)));
-        // Each use of the view jitters it anew, independently of the others.
+        // How far views are moved, and how much around each is the peak. Each use of the view moves it anew.
         let area = lobe.size(lit.view);
         let jittered = |i: u32| {
             if lit.jitter > 0.0 { lit.jittered(area, stream.child(mix(JITTER, u64::from(i))).two()) } else { lit.view }
@@ -58,7 +59,7 @@ impl<O: Observer> Walk<'_, O> {
             let view = jittered(i + 1);
             let Some(mut local) = lobe.sample(view, numbers.map(|x| narrowed(x, ss))) else { continue };
             local.z = local.z.copysign(hemisphere);
-            if through.is_some_and(|t| t.contains(local)) {
+            if through.is_some() && distance_squared(view, local) <= area {
                 continue;
             }
             // Where a texture tilts the normal, some go to the wrong side of the surface. Their light is not lost.

@@ -45,8 +45,7 @@ pub(super) struct Through {
     pub(super) colour: Rgb,
     /// Mean value around it, less the Lambertian part, 1/sr.
     pub(super) surround: Rgb,
-    /// x and y of the straight direction.
-    towards: [f64; 2],
+    view: DVec3,
     /// The smallest projected solid angle of any cell.
     least_area: f64,
 }
@@ -117,25 +116,21 @@ impl Through {
         enough.then(|| Self {
             colour: colour.max(Rgb::ZERO),
             surround: (surround / surround_area as f32).max(Rgb::ZERO),
-            towards: [-view.x, -view.y],
+            view,
             least_area,
         })
-    }
-
-    fn distance_squared(&self, v: DVec3) -> f64 {
-        let (x, y) = (v.x - self.towards[0], v.y - self.towards[1]);
-        x * x + y * y
-    }
-
-    /// True if a scattered sample is part of the peak.
-    pub(super) fn contains(&self, v: DVec3) -> bool {
-        self.distance_squared(v) <= self.least_area
     }
 
     /// True if a source of solid angle `omega` (its centre towards `v`) is seen through the peak.
     pub(super) fn shows(&self, v: DVec3, omega: f64) -> bool {
         let projected = (omega * v.z.abs()).min(PI);
         let reach = projected + self.least_area + 2.0 * (projected * self.least_area).sqrt();
-        self.distance_squared(v) <= REACH * reach
+        distance_squared(self.view, v) <= REACH * reach
     }
+}
+
+/// Square of how far `v` is from straight on, in projection.
+pub(super) fn distance_squared(view: DVec3, v: DVec3) -> f64 {
+    let (x, y) = (v.x + view.x, v.y + view.y);
+    x * x + y * y
 }
