@@ -63,6 +63,7 @@ def make(dice):
         options += ["@more.opt"]
     if dice.chance(0.1):
         options += odd(dice)
+        fields = "vv" if options[-1] == "-ovv" else fields
     stdin = pack(seen) + tail(dice, inward)
     look = Values(fields, outward, colours, None if stdin != pack(seen) else seen, pack, sized)
     octree = Step("oconv", ["-w", "scene.rad"], "scene.oct", same, needed=True)

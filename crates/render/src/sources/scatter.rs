@@ -16,8 +16,8 @@ use std::f64::consts::PI;
 
 /// Most points on a segment at which the light of a source is looked for.
 const MOST_POINTS: f64 = 16.0;
-/// Greatest exponent of light that grows on its way: e^80 is still a number.
-const MOST_GROWTH: Rgb = Rgb::splat(80.0);
+/// Greatest exponent of light that grows on its way: e^40 times the light of any source is still a number.
+const MOST_GROWTH: Rgb = Rgb::splat(40.0);
 /// Tag of the points' places.
 const PLACES: u64 = 0x3157;
 
