@@ -81,7 +81,7 @@ fn what_rough_trans_lets_through_spreads_along_the_surface() {
 fn samples_leave_out_what_is_seen_through() {
     // Of a table whose peak is half of all light, straight on. The means are Radiance's, of 60 000 rays: ± 0.0006.
     let table = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/files/straight.xml");
-    let pane = format!("void aBSDF m 5 {} 0 1 0 .\n0 0\n", table.display());
+    let pane = format!("void aBSDF m 5 \"{}\" 0 1 0 .\n0 0\n", table.display());
     for (x, want) in [(0.0, 0.54290), (0.5, 0.54866), (1.0, 0.55708)] {
         holds(mean("1", &pane, [x, 0.0, -1.0], "-ss 1", 20_000), want);
     }

@@ -45,6 +45,7 @@ pub(super) struct Through {
     pub(super) colour: Rgb,
     /// Mean value around it, less the Lambertian part, 1/sr.
     pub(super) surround: Rgb,
+    /// Whose light it is: what lies straight on is opposite.
     view: DVec3,
     /// The smallest projected solid angle of any cell.
     least_area: f64,
